@@ -21,9 +21,10 @@ from ._refinement import Refinement, mean_edge_length
 from ._surfaces import Block, Parts, Shapes, SurfaceError, copy_structure
 
 #: Properties that are no settings of the extension, with their defaults.
-_OWN: dict[str, Any] = {"RefineTo": 0.0, "MaximumNumberOfTriangles": 4000000, "NumberOfThreads": 0, "SeamTolerance": -1.0,
-        "ResultArrayName": "", "OutputPrecision": 2, "UseAsNormals": 1, "PointValueArray": "",
-        "PointWeightArray": ""}
+_OWN: dict[str, Any] = {
+    "RefineTo": 0.0, "MaximumNumberOfTriangles": 4000000, "NumberOfThreads": 0, "SeamTolerance": -1.0,
+    "ResultArrayName": "", "OutputPrecision": 2, "UseAsNormals": 1, "PointValueArray": "",
+    "PointWeightArray": ""}
 
 #: Read-only values before the first update; those that are not listed are 0.
 _NUMBERS: dict[str, float] = {"TimeUnit": 1.0, "DiffusionRateFactor": 1.0}

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Surfaces in several pieces, as partitioned data sets have them: each is made one surface, whose points and
-cells do not depend on the partition, and its results go back to the pieces. The rules are those of the classes
-in C++, Filters/Distributed/PointIdentity.h and StitchedSurface.h."""
+"""Surfaces in several pieces, as partitioned data sets have them: each is made one surface, whose points
+and cells do not depend on the partition, and its results go back to the pieces. The rules are those of the
+classes in C++, Filters/Distributed/PointIdentity.h and StitchedSurface.h."""
 
 from __future__ import annotations
 
@@ -72,18 +72,22 @@ class Stitched:
     pieces: list[Piece]
 
 
-def stitch_pieces(blocks: list[Block], tolerance: float, names: set[str], attributes: set[int]) -> list[Stitched]:
-    """Make the surfaces whose pieces are the blocks. names, attributes: of the arrays that are read; all others
-    are known by their names only."""
+def stitch_pieces(
+    blocks: list[Block], tolerance: float, names: set[str], attributes: set[int]
+) -> list[Stitched]:
+    """Make the surfaces whose pieces are the blocks. names, attributes: of the arrays that are read; all
+    others are known by their names only."""
     pieces: list[Piece] = []
     for block in blocks:
         first = pieces[-1].rows.stop if pieces else 0
         nothing = np.empty(0, dtype=np.int64)
-        pieces.append(Piece(block, _read_places(block.input), _read_cells(block.input), first, nothing, nothing))
-    ids = [_global_ids(piece.block.input) for piece in pieces]
-    by_id = all(found is not None for found in ids)
-    owners = _match(pieces, np.concatenate(ids) if by_id else None, tolerance)
-    numbers = np.concatenate(ids if by_id else [_core.number_places(piece.places) for piece in pieces])
+        places, cells = _read_places(block.input), _read_cells(block.input)
+        pieces.append(Piece(block, places, cells, first, nothing, nothing))
+    found = [_global_ids(piece.block.input) for piece in pieces]
+    given = [ids for ids in found if ids is not None]
+    by_id = len(given) == len(found)
+    owners = _match(pieces, np.concatenate(given) if by_id else None, tolerance)
+    numbers = np.concatenate(given if by_id else [_core.number_places(piece.places) for piece in pieces])
     by_surface: dict[int, list[Piece]] = {}
     for piece in pieces:
         by_surface.setdefault(piece.block.surface, []).append(piece)
@@ -152,8 +156,8 @@ def _match(pieces: list[Piece], ids: NDArray[np.int64] | None, tolerance: float)
         is_open, is_copy = (np.concatenate(kind).astype(np.uint8)[candidates] for kind in
                             zip(*(_flags(piece) for piece in pieces)))
         found = _core.match_points(
-            surfaces, numbers, np.concatenate([piece.places for piece in pieces])[candidates], is_open, is_copy,
-            None if ids is None else ids[candidates], tolerance)
+            surfaces, numbers, np.concatenate([piece.places for piece in pieces])[candidates], is_open,
+            is_copy, None if ids is None else ids[candidates], tolerance)
         owners[candidates] = candidates[found]
     return owners
 
@@ -172,14 +176,14 @@ def _flags(piece: Piece) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     following[cells.offsets[full + 1] - 1] = cells.corners[cells.offsets[full]]
     of_polygons = (kept & ~cells.is_strip)[owner]
     edges = [np.stack([cells.corners, following], axis=1)[of_polygons]]
-    for number in np.flatnonzero(kept & cells.is_strip):
-        strip = cells.corners[cells.offsets[number]:cells.offsets[number + 1]]
+    for strip_number in np.flatnonzero(kept & cells.is_strip):
+        strip = cells.corners[cells.offsets[strip_number]:cells.offsets[strip_number + 1]]
         triangles = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1)
         edges.append(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
     ends = np.sort(np.vstack(edges), axis=1)
-    keys, number = np.unique(ends[:, 0] * count + ends[:, 1], return_counts=True)
+    keys, uses = np.unique(ends[:, 0] * count + ends[:, 1], return_counts=True)
     on_edge = np.zeros(count, dtype=bool)
-    for side in np.divmod(keys[number == 1], max(1, count)):
+    for side in np.divmod(keys[uses == 1], max(1, count)):
         on_edge[side] = True
     ghosts = piece.block.input.GetPointGhostArray()
     is_duplicate = np.zeros(count, dtype=bool)
@@ -224,8 +228,8 @@ def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.
 
 
 def _stitch_cells(pieces: list[Piece], surface: Any) -> NDArray[np.int64]:
-    """Add the cells, apart from ghosts and hidden ones, ordered by their global ids and points. Return the row
-    of each among the cells of all pieces."""
+    """Add the cells, apart from ghosts and hidden ones, ordered by their global ids and points. Return the
+    row of each among the cells of all pieces."""
     corners, sizes = [], []
     for piece in pieces:
         is_good = (piece.cells.corners >= 0) & (piece.cells.corners < len(piece.places))
@@ -292,8 +296,9 @@ def _sort_cells(cells: Cells, ids: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _merge(pieces: list[tuple[Any, int, int]], rows: NDArray[np.int64], names: set[str], attributes: set[int],
            merged: Any) -> None:
-    """Add the arrays that are read and that all pieces have, with the same name, type and number of components.
-    pieces: of each the arrays, its first tuple and their number. rows: of the tuples of all pieces."""
+    """Add the arrays that are read and that all pieces have, with the same name, type and number of
+    components. pieces: of each the arrays, its first tuple and their number. rows: of the tuples of all
+    pieces."""
     lists = [list(_find_read(*piece, names, attributes)) for piece in pieces]
     for key, array in lists[0] if lists else []:
         arrays = [dict(found).get(key) for found in lists]
@@ -302,7 +307,8 @@ def _merge(pieces: list[tuple[Any, int, int]], rows: NDArray[np.int64], names: s
             continue
         new = vtkTypeInt64Array() if isinstance(array, vtkIdTypeArray) else array.NewInstance()
         if isinstance(array, vtkDataArray):
-            values = [to_numpy(other)[first:first + count] for other, (_, first, count) in zip(arrays, pieces)]
+            values = [to_numpy(other)[first:first + count]
+                      for other, (_, first, count) in zip(arrays, pieces)]
             new.DeepCopy(numpy_to_vtk(np.ascontiguousarray(np.concatenate(values)[rows])))
         else:  # which cannot be data
             new.SetNumberOfComponents(array.GetNumberOfComponents())
@@ -312,7 +318,8 @@ def _merge(pieces: list[tuple[Any, int, int]], rows: NDArray[np.int64], names: s
             copy_component_names(other, new)
         index = merged.AddArray(new)
         for kind in attributes:
-            if all(of_piece.GetAbstractAttribute(kind) is other for (of_piece, _, _), other in zip(pieces, arrays)):
+            if all(of_piece.GetAbstractAttribute(kind) is other
+                   for (of_piece, _, _), other in zip(pieces, arrays)):
                 merged.SetActiveAttribute(index, kind)
 
 
