@@ -86,7 +86,7 @@ public:
    * normals is minimised, the displacements along the normals are more alike at neighbours than
    * independent noise is: with d_i at the point i and the sums s_i over it and its n_i neighbours,
    * sum s_i^2 / sum (1 + n_i) is larger than the mean of d_i^2 by more than two standard deviations.
-   * Correlated noise has one method for both kinds.
+   * Correlated noise has one method for both kinds, and counts as CAD.
    */
   SURFACEDIFFUSION_CHOICE(SurfaceType);
   void SetSurfaceTypeToAutomatic() { this->SetSurfaceType(SURFACE_TYPE_AUTOMATIC); }
@@ -108,9 +108,9 @@ public:
 
   /**
    * The kind of surface of the last update, given or found: SURFACE_TYPE_CAD or
-   * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, if no noise or correlated
-   * noise was found, and if components or blocks of composite data are of different kinds; those
-   * without a kind do not count.
+   * SURFACE_TYPE_ORGANIC. SURFACE_TYPE_AUTOMATIC before the first update, if no noise was found,
+   * and if components or blocks of composite data are of different kinds; those without noise do
+   * not count.
    */
   SURFACEDIFFUSION_NUMBER(EffectiveSurfaceType, int);
 

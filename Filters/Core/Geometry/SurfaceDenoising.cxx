@@ -79,7 +79,7 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   const DenoisingScheme sharp = SchemeFor(SurfaceKind::Sharp, noise / h);
   const DenoisingScheme smooth = SchemeFor(SurfaceKind::Smooth, noise / h);
   Points moved;
-  result.Type = settings.Type;
+  result.Type = settings.Type == SurfaceType::Automatic ? SurfaceType::CAD : settings.Type;
   if (correlated.Length > 0.0)
   {
     moved = denoise(SchemeForCorrelatedNoise(correlated.Length / h), rest);
@@ -92,7 +92,6 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
              DenoiseUnlessDetailsAreLost(graph, points, isFixed, noise, sharp, parallel, rest))
   {
     moved = std::move(*found);
-    result.Type = SurfaceType::CAD;
   }
   else
   {

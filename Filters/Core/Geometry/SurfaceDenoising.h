@@ -28,8 +28,7 @@ struct DenoisingReport
 {
   /// Given or estimated, in the unit of the points: the root mean square over the vertices.
   double NoiseLevel = 0.0;
-  /// Given or found; Automatic: no noise or correlated noise was found, or parts are of different
-  /// types.
+  /// Given or found; Automatic: no noise was found, or parts are of different types.
   SurfaceType Type = SurfaceType::Automatic;
   /// The length over which the noise is correlated, in the unit of the points: the largest of the
   /// parts. 0: none was found (see EstimateCorrelatedNoise()).
