@@ -134,6 +134,8 @@ public:
   {
     const TriangleMesh& mesh = this->Graph.Mesh;
     const Vector displacements = this->DisplacementsAlongNormals(this->LastNormals);
+    Vector means = displacements;
+    AverageOverNeighbours(mesh, means, this->Parallel);
     double free = 0.0;
     double square = 0.0;
     double squareOfSums = 0.0;
@@ -144,19 +146,11 @@ public:
       {
         continue;
       }
-      const Index begin = mesh.VertexCornersBegin()[i];
-      const Index end = mesh.VertexCornersBegin()[i + 1];
-      double sum = displacements[i];
-      for (Index k = begin; k < end; ++k)
-      {
-        const Index corner = mesh.VertexCorners()[k];
-        sum += 0.5 *
-          (displacements[mesh.OtherCorner(corner, 1)] + displacements[mesh.OtherCorner(corner, 2)]);
-      }
+      const double count = 1.0 + mesh.VertexCornersBegin()[i + 1] - mesh.VertexCornersBegin()[i];
       free += 1.0;
       square += displacements[i] * displacements[i];
-      squareOfSums += sum * sum;
-      terms += 1.0 + end - begin;
+      squareOfSums += count * means[i] * count * means[i];
+      terms += count;
     }
     // Sums share terms, so that there are as many independent ones as sums without a common term.
     const double deviation = std::sqrt(2.0 * terms) / std::max(1.0, free);
