@@ -31,7 +31,6 @@ _NUMBERS: dict[str, float] = {"TimeUnit": 1.0, "DiffusionRateFactor": 1.0}
 
 
 _MISSING = object()
-_NO_POLYGONS = "the input has no polygons or strips; a surface is needed"
 
 
 class _Aborted(Exception):
@@ -207,16 +206,12 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         if controller is not None and controller.GetNumberOfProcesses() > 1:
             return "ParaView runs in several processes; allowed: one (the plugin in C++ works in several)"
         problems = self._check_own()
-        blocks = self._select(parts, problems)
-        if not problems:
-            self._refine(blocks, refinement)
-        stitched: list[Stitched] = []
-        if parts.in_pieces:
-            stitched = self._stitch(parts.blocks)
-            had_blocks = bool(blocks)
-            blocks = [surface.block for surface in stitched if _has_polygons(surface.block)]
-            if had_blocks and not blocks:  # all cells were ghosts or hidden
-                problems.append(_NO_POLYGONS)
+        given = [block for block in parts.blocks if _has_polygons(block)]
+        if given and not problems:
+            self._refine(given, refinement)
+        stitched = self._stitch(parts.blocks) if parts.in_pieces else []
+        blocks = [surface.block for surface in stitched] if stitched else parts.blocks
+        blocks = self._select(blocks, parts, problems)
         # Problems of the arrays are reported with those of the settings.
         self.begin(inputs)
         fields = self._find_all(blocks, problems)
@@ -278,9 +273,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     def may_refine_automatically(self) -> bool:
         return False
 
-    def _select(self, parts: Parts, problems: list[str]) -> list[Block]:
+    def _select(self, blocks: list[Block], parts: Parts, problems: list[str]) -> list[Block]:
         """Return the blocks with polygons."""
-        with_points = [block for block in parts.blocks if block.input.GetNumberOfPoints() > 0]
+        with_points = [block for block in blocks if block.input.GetNumberOfPoints() > 0]
         selected = [block for block in with_points if _has_polygons(block)]
         if not with_points and parts.other_types:
             problems.append(("the blocks are " if parts.is_composite else "the input is ") + parts.other_types
@@ -289,7 +284,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         elif not with_points:
             problems.append("the input is empty; a surface of polygons or strips is needed")
         elif not selected:
-            problems.append(_NO_POLYGONS)
+            problems.append("the input has no polygons or strips; a surface is needed")
         return selected
 
     def _stitch(self, pieces: list[Block]) -> list[Stitched]:
