@@ -298,6 +298,14 @@ inline std::vector<FilterKind> AllFilters()
       [](Spline* f) { SetInputArray(f, 0, "c", true); })),
     { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },
       "Displacement" },
+    MakeKind<vtkSurfaceDenoisingFilter>("DenoisingOfLevel", "Displacement", 0,
+      [](vtkSurfaceDenoisingFilter* f) { f->SetNoiseLevel(0.02); }),
+    MakeKind<vtkSurfaceDenoisingFilter>("DenoisingOrganic", "Displacement", 0,
+      [](vtkSurfaceDenoisingFilter* f)
+      {
+        f->SetNoiseLevel(0.02);
+        f->SetSurfaceTypeToOrganic();
+      }),
     MakeKind<vtkSurfaceReliefFilter>("Relief", "ReliefHeight", 0,
       [](vtkSurfaceReliefFilter* f)
       {

@@ -386,6 +386,10 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
           field->SetFWHM((scaled ? length : 1.0) * field->GetFWHM());
           field->SetRange((scaled ? length : 1.0) * field->GetRange());
         }
+        if (auto* denoising = vtkSurfaceDenoisingFilter::SafeDownCast(f))
+        {
+          denoising->SetNoiseLevel((scaled ? length : 1.0) * denoising->GetNoiseLevel());
+        }
         if (auto* derivatives = vtkSurfaceDerivativesFilter::SafeDownCast(f))
         {
           derivatives->SetSmoothingFWHM((scaled ? length : 1.0) * derivatives->GetSmoothingFWHM());
