@@ -8,24 +8,32 @@
  * arrays stay. All weights follow from the noise level, which is estimated unless it is given, so
  * that no setting is necessary.
  *
- * The method alternates two steps. With n_f the unit normals, a_f the areas and c_f the centroids
- * of the triangles, the first regularises the normals n0 of the present surface: it descends on
+ * The method alternates two steps. With the normals n0_f, the areas a_f and the centroids c_f of the
+ * triangles of the present surface, the first finds regular normals n_f, the directions of
  *
- *     sum_{f,g} a_f a_g w_fg rho(|n_f - n_g|) + mu sum_f a_f^2 |n_f - n0_f|^2,    |n_f| = 1,
+ *     a_f n0_f + sum_g a_g w_fg n0_g,
+ *     w_fg = exp(-|c_f - c_g|^2 / (2 s^2) - |m_f - m_g|^2 / (2 r^2)),
  *
- * over pairs of triangles that share a vertex. rho(d) = 1 - exp(-d^2 / (2 r^2)) saturates at sharp
- * edges, and w_fg = exp(-|c_f - c_g|^2 / (2 s^2) - |m_f - m_g|^2 / (2 r^2)) has the guide normals m
- * (W. Zhang, B. Deng, J. Zhang, S. Bouaziz, L. Liu, Guided Mesh Normal Filtering, Computer Graphics
- * Forum 34(7), 2015). The second step moves the points x, which were given as x0, towards the
- * minimum of
+ * over the triangles g that share a vertex with f. The guide normals m make the weights w_fg small
+ * across sharp edges (W. Zhang, B. Deng, J. Zhang, S. Bouaziz, L. Liu, Guided Mesh Normal Filtering,
+ * Computer Graphics Forum 34(7), 2015). Later iterations fit linear functions of the centroids with
+ * the same weights, which keeps curvature. The second step moves the points x, which were given as
+ * x0, towards the minimum of
  *
  *     sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2
  *       + sum_i l_i (N_i . (x_i - x0_i))^2 + t |(I - N_i N_i^T) (x_i - x0_i)|^2
  *
- * with the vertex normals N, by four steps of conjugate gradients on CAD shapes and one on organic
- * ones: few steps regularise. On CAD shapes, 15 steps towards the last normals follow. l_i is
+ * with the vertex normals N, by one step of conjugate gradients: few steps regularise. l_i is
  * proportional to the inverse of the variance of the noise, and smaller for outliers. Tangential
  * displacements are small, so that triangles keep their shapes and boundary curves do not shrink.
+ *
+ * The displacements d along the normals decide when this ends, around each point: with the sums s_i
+ * of d over point i and its neighbours, m_i points together, their whiteness
+ * R = sum_i s_i^2 / m_i / sum_i d_i^2 is 1 for independent noise, smaller while noise is left, and
+ * larger where details were removed. Steps become smaller from R = 0.55 on, and 0 at 0.75. On CAD
+ * shapes the total generalised variation of the normals is minimised then (Z. Liu, Y. Li, W. Wang,
+ * L. Liu, R. Chen, Mesh Total Generalized Variation for Denoising, TVCG 28(12), 2022), and 15 steps
+ * towards the last normals follow.
  *
  * Connected components have noise levels, types and units of length of their own, so that several
  * surfaces in one data set are denoised as each alone. Components with less than 200 points, too
@@ -82,10 +90,9 @@ public:
   /**
    * The kind of surface. CAD: smooth faces, which may meet in sharp edges. Organic: shapes with
    * details of the size of a few triangles, such as scans. Automatic (the default): a component is
-   * denoised as CAD unless its details would be lost. They would be if, before the variation of
-   * normals is minimised, the displacements along the normals are more alike at neighbours than
-   * independent noise is: with d_i at the point i and the sums s_i over it and its n_i neighbours,
-   * sum s_i^2 / sum (1 + n_i) is larger than the mean of d_i^2 by more than two standard deviations.
+   * denoised as CAD, and this is kept if the displacements along the normals are then as white as
+   * independent noise, R <= 1 within two standard deviations. Otherwise it is Organic: the variation
+   * of normals would lose details.
    * Correlated noise has one method for both kinds, and counts as CAD.
    */
   SURFACEDIFFUSION_CHOICE(SurfaceType);

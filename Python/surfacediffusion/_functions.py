@@ -596,25 +596,30 @@ def denoise_mesh(
 ) -> MeshDenoisingResult:
     """Remove the noise of the points of a surface, and keep its sharp edges.
 
-    Two steps alternate. With n_f the unit normals, a_f the areas and c_f the centroids of the
-    triangles, the first regularises the normals n0 of the present surface, by descent on
+    Two steps alternate. With the normals n0_f, the areas a_f and the centroids c_f of the triangles of
+    the present surface, the first finds regular normals n_f, the directions of
 
-        sum_{f,g} a_f a_g w_fg rho(abs(n_f - n_g)) + mu sum_f a_f^2 abs(n_f - n0_f)^2
+        a_f n0_f + sum_g a_g w_fg n0_g
+        w_fg = exp(-abs(c_f - c_g)^2/(2 s^2) - abs(m_f - m_g)^2/(2 r^2))
 
-    over pairs of triangles that share a point. rho(d) = 1 - exp(-d^2/(2 r^2)) saturates at sharp
-    edges, and w_fg = exp(-abs(c_f - c_g)^2/(2 s^2) - abs(m_f - m_g)^2/(2 r^2)) has the guide normals
-    m (Zhang, Deng, Zhang, Bouaziz, Liu, Guided Mesh Normal Filtering, CGF 34(7), 2015). The second
-    moves the points x, which were given as x0, by a few steps of conjugate gradients towards the
-    minimum of
+    over the triangles g that share a point with f. The guide normals m make the weights small across
+    sharp edges (Zhang, Deng, Zhang, Bouaziz, Liu, Guided Mesh Normal Filtering, CGF 34(7), 2015). Later
+    iterations fit linear functions of the centroids with the same weights. The second step moves the
+    points x, which were given as x0, by one step of conjugate gradients towards the minimum of
 
         sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2 + sum_i l_i (N_i . (x_i - x0_i))^2
 
     and a term that keeps tangential displacements small. All weights follow from the noise level: l_i
-    is proportional to the inverse of its square, and smaller for outliers. A surface is denoised as a
-    CAD shape unless the displacements are then more alike at neighbours than independent noise is:
-    they would be details, as organic shapes have them. Connected components have levels, kinds and units of length of their own; those with less than 200 points share one level,
-    relative to their mean edge lengths, and one kind. A surface whose estimated noise is 0 stays as it
-    is. Faces may be oriented at random, and the numbering of points and faces does not matter.
+    is proportional to the inverse of its square, and smaller for outliers. This ends, around each
+    point, where the displacements along the normals approach the whiteness of independent noise. On
+    CAD shapes the total generalised variation of the normals is minimised then (Liu, Li, Wang, Liu,
+    Chen, TVCG 28(12), 2022). A surface counts as CAD if the displacements are as white as independent
+    noise after this. Otherwise it is organic, and the result before is kept: details were lost.
+
+    Connected components have levels, kinds and units of length of their own; those with less than 200
+    points share one level, relative to their mean edge lengths, and one kind. A surface whose estimated
+    noise is 0 stays as it is. Faces may be oriented at random, and the numbering of points and faces
+    does not matter.
 
     Parameters
     ----------

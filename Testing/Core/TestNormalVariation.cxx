@@ -104,7 +104,7 @@ TEST(NormalVariation, ConstantNormalsStay)
   const Points data = faces.Data([](Index) { return Eigen::RowVector3d(0.6, 0.0, -0.8); });
   NormalVariation variation = faces.Variation();
   EXPECT_LT(LargestDifference(variation.Minimize(data, Settings(0.3, 0.5, 20)), data), 1e-14);
-  EXPECT_LT(variation.MeasureEnergy().Value, 1e-12);
+  EXPECT_LT(variation.MeasureEnergy(data).Value, 1e-12);
 }
 
 /// On surfaces that can be unrolled, such as cylinders, also with steep turns.
@@ -122,7 +122,7 @@ TEST(NormalVariation, LinearNormalsOfBentStripsStay)
       });
     NormalVariation variation = faces.Variation();
     EXPECT_LT(LargestDifference(variation.Minimize(data, Settings(0.3, 0.5, 3000)), data), 1e-6);
-    const NormalVariation::Energy energy = variation.MeasureEnergy();
+    const NormalVariation::Energy energy = variation.MeasureEnergy(data);
     EXPECT_LT(energy.Value, 1e-2);
     EXPECT_LT(energy.Gap, 1e-4);
   }
@@ -172,7 +172,7 @@ TEST(NormalVariation, GapIsNotNegativeAndVanishes)
     NormalVariation variation = faces.Variation();
     variation.SetWeights(data, 0.3);
     variation.Minimize(data, Settings(0.1, 0.13, iterations));
-    const NormalVariation::Energy energy = variation.MeasureEnergy();
+    const NormalVariation::Energy energy = variation.MeasureEnergy(data);
     EXPECT_GE(energy.Gap, -1e-9 * energy.Value) << iterations;
     last = energy.Gap / energy.Value;
   }

@@ -329,66 +329,11 @@ TEST(SurfaceDenoising, LinearFitKeepsTheTurnOfNormalsAtBoundariesWhereTheMeanFla
   }
   const Points normals = flat.Geometry.Normals;
   NormalFilterSettings settings;
-  settings.Sweeps = 1;
   settings.Width = 2.0;
   const Points linear = FitLinearNormals(flat.Graph, flat.Geometry, normals, settings, SerialFor());
   const Points mean = FilterNormals(flat.Graph, flat.Geometry, normals, settings, SerialFor());
   const double error = (linear - normals).rowwise().norm().maxCoeff();
   EXPECT_LT(error, 0.5 * (mean - normals).rowwise().norm().maxCoeff());
-}
-
-namespace
-{
-
-/// E of FilterNormals(), times 2 r^2, with the penalty whose derivative is FallOff(). The weight mu
-/// is Fidelity over r^2.
-double EnergyOfNormals(const FaceGraph& graph, const FaceGeometry& geometry, const Vector& weights,
-  const NormalFilterSettings& settings, const Points& normals)
-{
-  const double square = settings.Range * settings.Range;
-  double energy = 0.0;
-  for (Index f = 0; f < graph.NumberOfFaces(); ++f)
-  {
-    for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
-    {
-      const Index g = graph.Ring.Entries[k];
-      const double x = 0.5 * (normals.row(f) - normals.row(g)).squaredNorm() / square;
-      const double rho = 8.0 / 9.0 * (1.0 - std::pow(1.0 - 0.125 * std::min(x, 8.0), 9));
-      energy += 2.0 * square * geometry.Areas[f] * geometry.Areas[g] * weights[k] * rho;
-    }
-    energy += 2.0 * settings.Fidelity * geometry.Areas[f] * geometry.Areas[f] *
-      (normals.row(f) - geometry.Normals.row(f)).squaredNorm();
-  }
-  return energy;
-}
-
-} // namespace
-
-/// The first sweep has another penalty, so that E falls from its result on.
-TEST(SurfaceDenoising, EverySweepOverNormalsLowersTheirEnergy)
-{
-  for (const Surface& surface : { LBlock(10), Icosphere(3), Strip(20, 16) })
-  {
-    for (const double amount : { 0.2, 1.0 })
-    {
-      const Surface noisy = NoisyAlongNormals(surface, amount);
-      const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
-      const FaceGraph graph(mesh);
-      FaceGeometry geometry;
-      geometry.Measure(mesh, GatherVertices(mesh, noisy.Vertices) / mesh.LengthUnit(), SerialFor());
-      NormalFilterSettings settings;
-      const Points guide = MakeGuide(graph, geometry, settings, SerialFor());
-      const Vector weights = NeighbourWeights(graph, geometry, guide, settings, SerialFor());
-      double last = std::numeric_limits<double>::infinity();
-      for (settings.Sweeps = 1; settings.Sweeps <= 12; ++settings.Sweeps)
-      {
-        const Points normals = FilterNormals(graph, geometry, guide, settings, SerialFor());
-        const double energy = EnergyOfNormals(graph, geometry, weights, settings, normals);
-        EXPECT_LT(energy, last) << settings.Sweeps << " sweeps, noise " << amount;
-        last = energy;
-      }
-    }
-  }
 }
 
 TEST(SurfaceDenoising, FoldedTrianglesOfAPlaneAreTurnedWithinThePlane)

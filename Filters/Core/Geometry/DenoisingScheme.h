@@ -6,29 +6,37 @@
 #include "Core/Geometry/NormalFit.h"
 #include "Core/Geometry/NormalVariation.h"
 
-#include <optional>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
 
-/// How normals are filtered and vertices fitted for one kind of surface, in mean edge lengths h.
+/// The kind of surface that a user asks for.
+enum class SurfaceType
+{
+  Automatic, ///< found by what the scheme for CAD removes
+  CAD, ///< smooth faces, which may meet in sharp edges
+  Organic ///< details of a few triangles
+};
+
+/// How normals are filtered and vertices fitted, in mean edge lengths h. DenoiseSurface() says why.
 struct DenoisingScheme
 {
   /// The first stage: FilterNormals(), which finds the edges of the surface.
   NormalFilterSettings Filter;
   int Iterations = 10;
-  /// Fidelity of the fit in the first and in the last iteration for noise of 0.3 h. It is
-  /// proportional to the inverse of the variance of the noise.
-  double FirstFidelity = 0.45;
-  double LastFidelity = 0.045;
+  double Fidelity = 0.09; ///< of the fit, for noise of 0.3 h; proportional to its inverse variance
   /// The second stage: FitLinearNormals(), which regains the curvature that the first flattened.
-  NormalFilterSettings LinearFilter;
-  int LinearIterations = 20;
-  double LinearFidelity = 0.04; ///< of the fit, for noise of 0.3 h
+  NormalFilterSettings LinearFilter = { 0.3, 1.5 };
+  int LinearIterations = 30;
+  double LinearFidelity = 0.02; ///< the same
+  double TangentialFidelity = 2.0; ///< of all fits
+  /// Whether the fidelity and the second stage follow the displacements around each vertex: those of
+  /// independent noise have its variance and are independent.
+  bool IsNoiseIndependent = true;
   /// The third stage: NormalVariation, whose weight of the first order falls geometrically, and a
-  /// fit after each minimisation. 0 iterations: none.
-  int VariationIterations = 6;
+  /// fit after each minimisation.
+  int VariationIterations = 8;
   double FirstVariation = 0.1; ///< a1 in the first and in the last iteration
   double LastVariation = 0.08;
   double SecondOrder = 1.3; ///< weight of the second order over that of the first
@@ -38,33 +46,32 @@ struct DenoisingScheme
   int VariationFitIterations = 6;
   /// The end: one fit to the normals of the last iteration that is nearly solved, with a fidelity
   /// that grows less with weaker noise than those of the iterations, in which too loose a fit would
-  /// lose details step by step. 0 iterations: none.
+  /// lose details step by step.
   double FinalFidelity = 0.03; ///< for noise of 0.3 h
   int FinalFitIterations = 15;
-  double TangentialFidelity = 0.1;
-  int FitIterations = 4; ///< of conjugate gradients in each iteration: few of them regularise
   double OutlierLevel = 1.0; ///< OutlierDistance of the fit, in standard deviations of the noise
-  /// Whether the fidelity follows the local displacements (see DenoiseSurface()), or their median.
-  bool HasLocalFidelity = false;
 };
 
-/// The scheme with which surfaces of this kind are denoised. noise: its standard deviation in h.
-DenoisingScheme SchemeFor(SurfaceKind kind, double noise);
+/// The scheme for independent noise of this standard deviation, in h.
+DenoisingScheme SchemeForIndependentNoise(double noise);
 
-/// The scheme for noise that is correlated over this length in h, on surfaces of both kinds: the
-/// variation of normals averages over that length.
+/// The scheme for noise that is correlated over this length in h: the variation of normals averages
+/// over that length.
 DenoisingScheme SchemeForCorrelatedNoise(double length);
 
-/// Remove noise of this standard deviation, in the unit of the points, by the iterations of a
-/// scheme: DenoiseSurface() says which.
-Points DenoiseWithScheme(const FaceGraph& graph, const Points& points,
-  const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme,
-  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+struct DenoisedSurface
+{
+  Points Moved;
+  SurfaceType Type; ///< given or found
+};
 
-/// The same, or nothing if the displacements after the second stage are more alike at neighbours
-/// than independent noise is: then they are details of the surface, too.
-std::optional<Points> DenoiseUnlessDetailsAreLost(const FaceGraph& graph, const Points& points,
-  const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme,
+/// Remove noise of this standard deviation, in the unit of the points, by the stages of a scheme:
+/// of surfaces of the type Organic by the first two. If the type is Automatic, the result of the
+/// third is kept if its displacements are as white as independent noise, within two standard
+/// deviations (see DisplacementStatistics).
+/// points: per vertex of the mesh; fixed: see DenoiseSurface(). Throws Aborted.
+DenoisedSurface DenoiseWithScheme(const TriangleMesh& mesh, const Points& points,
+  const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme, SurfaceType type,
   const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 
 } // namespace SurfaceDiffusion

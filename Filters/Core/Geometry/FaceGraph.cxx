@@ -6,8 +6,6 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
-
 namespace SurfaceDiffusion
 {
 
@@ -30,7 +28,7 @@ int NumberOfSharedVertices(const Triangles& triangles, Index t, Index u)
 /// Append the neighbours of triangle t.
 void AppendRing(const VertexFans& fans, Index t, std::vector<Index>& entries)
 {
-  const auto first = static_cast<std::ptrdiff_t>(entries.size());
+  const std::size_t first = entries.size();
   for (int a = 0; a < 3; ++a)
   {
     fans.ForEachNeighbour(t, a,
@@ -42,48 +40,22 @@ void AppendRing(const VertexFans& fans, Index t, std::vector<Index>& entries)
         }
       });
   }
-  const auto begin = entries.begin() + first;
-  std::sort(begin, entries.end());
-  entries.erase(std::unique(begin, entries.end()), entries.end());
-}
-
-/// Fill the lists whose members append(i, entries) appends.
-template <typename Append>
-void FillLists(IndexLists& lists, Index count, const ParallelFor& parallel, const Append& append)
-{
-  lists.Begin.assign(static_cast<std::size_t>(count) + 1, 0);
-  std::vector<std::vector<Index>> blocks(NumberOfBlocks(count));
-  ForEachBlock(parallel, count,
-    [&](Index block, Index begin, Index end)
-    {
-      std::vector<Index>& entries = blocks[block];
-      for (Index i = begin; i < end; ++i)
-      {
-        const std::size_t before = entries.size();
-        append(i, entries);
-        lists.Begin[i] = static_cast<Offset>(entries.size() - before);
-      }
-    });
-  CountsToOffsets(lists.Begin);
-  lists.Entries.resize(static_cast<std::size_t>(lists.Begin.back()));
-  ForEachBlock(parallel, count,
-    [&](Index block, Index begin, Index)
-    {
-      std::copy(
-        blocks[block].begin(), blocks[block].end(), lists.Entries.begin() + lists.Begin[begin]);
-    });
+  SortUnique(entries, first);
 }
 
 } // namespace
 
-FaceGraph::FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel)
+FaceGraph::FaceGraph(
+  const TriangleMesh& mesh, const ParallelFor& parallel, const ProgressMonitor& progress)
   : Mesh(mesh)
 {
   const Index count = mesh.NumberOfTriangles();
   const VertexFans fans(mesh);
-  FillLists(this->Ring, count, parallel,
-    [&](Index t, std::vector<Index>& entries) { AppendRing(fans, t, entries); });
-  FillLists(this->Across, count, parallel,
+  progress.Report(0.2);
+  this->Ring = MakeLists(
+    count, parallel, [&](Index t, std::vector<Index>& entries) { AppendRing(fans, t, entries); });
+  progress.Report(0.5);
+  this->Across = MakeLists(count, parallel,
     [&](Index t, std::vector<Index>& entries)
     {
       for (Offset k = this->Ring.Begin[t]; k < this->Ring.Begin[t + 1]; ++k)
@@ -93,25 +65,6 @@ FaceGraph::FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel)
           entries.push_back(this->Ring.Entries[k]);
         }
       }
-    });
-  FillLists(this->Inside, count, parallel,
-    [&](Index t, std::vector<Index>& entries)
-    {
-      const auto begin = this->Ring.Entries.begin() + this->Ring.Begin[t];
-      const auto end = this->Ring.Entries.begin() + this->Ring.Begin[t + 1];
-      const auto appendPairs = [&](Index f)
-      {
-        for (Offset k = this->Across.Begin[f]; k < this->Across.Begin[f + 1]; ++k)
-        {
-          const Index g = this->Across.Entries[k];
-          if (g > f && (g == t || std::binary_search(begin, end, g)))
-          {
-            entries.push_back(static_cast<Index>(k));
-          }
-        }
-      };
-      appendPairs(t);
-      std::for_each(begin, end, appendPairs);
     });
 }
 

@@ -2,36 +2,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/Offsets.h"
+#include "Core/Foundation/IndexLists.h"
+#include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Surface/TriangleMesh.h"
-
-#include <vector>
 
 namespace SurfaceDiffusion
 {
 
-/// Lists of numbers, one list per row.
-struct IndexLists
-{
-  std::vector<Offset> Begin; ///< list i is Entries[Begin[i]] .. Entries[Begin[i + 1]]
-  std::vector<Index> Entries;
-};
-
 /// The triangles of a mesh as the nodes of a graph.
 struct FaceGraph
 {
-  explicit FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
+  /// Throws Aborted.
+  explicit FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor(),
+    const ProgressMonitor& progress = ProgressMonitor());
 
-  Index NumberOfFaces() const { return static_cast<Index>(this->Ring.Begin.size()) - 1; }
+  Index NumberOfFaces() const { return this->Mesh.NumberOfTriangles(); }
 
   const TriangleMesh& Mesh;
   /// Per triangle: the others that share a vertex with it, ascending. Around vertices with many
   /// triangles, some of them: see VertexFans.
   IndexLists Ring;
   IndexLists Across; ///< per triangle: those of its ring that share an edge with it, ascending
-  /// Per triangle: the places in Across.Entries of the pairs of triangles of its patch, itself and
-  /// its ring, that share an edge; each pair once.
-  IndexLists Inside;
 };
 
 /// Unit normals, areas and centroids of the triangles. The normal of a triangle of zero area is 0.

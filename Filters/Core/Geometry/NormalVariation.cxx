@@ -23,7 +23,9 @@ constexpr double SmallestArea = 1e-4; ///< over the mean
 
 using Block = VariationBlock;
 using Edge = VariationEdge;
-using Inverse = std::array<double, 6>; ///< a symmetric matrix: xx, xy, xz, yy, yz, zz
+/// A symmetric matrix: xx, xy, xz, yy, yz, zz. As the directions of descent, in single precision: the
+/// length of a step is found for the direction that is stored.
+using Inverse = std::array<float, 6>;
 
 /// What all triangles read.
 struct Lists
@@ -77,7 +79,7 @@ SURFACEDIFFUSION_ANY_VECTORS void FindForces(
 /// the last ones, b. forces: those of b', and after the call of b. Returns the product of the
 /// directions with the residuals, and adds the part of the areas to the curvature.
 SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const double* given,
-  const double* state, const double* multipliers, double* forces, double* direction,
+  const double* state, const double* multipliers, double* forces, float* direction,
   double& curvature, Index begin, Index end)
 {
   double sum = 0.0;
@@ -113,6 +115,7 @@ SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const dou
       p.Rows[2][c] = m[2] * r.Rows[0][c] + m[4] * r.Rows[1][c] + m[5] * r.Rows[2][c];
     }
     StoreBlock(direction, f, p);
+    p = LoadBlock(direction, f);
     sum += Product(p, r);
     curvature += area * SquareOf(p.Rows[0]) + Ridge * (SquareOf(p.Rows[1]) + SquareOf(p.Rows[2]));
   }
@@ -121,7 +124,7 @@ SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const dou
 
 /// The part of the edges in the curvature.
 SURFACEDIFFUSION_ANY_VECTORS double SumSquaresOfDifferences(
-  const Edge* edges, const double* direction, Index begin, Index end)
+  const Edge* edges, const float* direction, Index begin, Index end)
 {
   double sum = 0.0;
   for (Index e = begin; e < end; ++e)
@@ -181,10 +184,9 @@ public:
   {
     const Index count = this->Graph.NumberOfFaces();
     this->Settings = settings;
-    this->Given = given;
     if (this->State.empty())
     {
-      this->Start();
+      this->Start(given);
     }
     const Lists lists = this->GetLists();
     ForEach(this->Parallel, this->Edges.Size(),
@@ -200,7 +202,7 @@ public:
     for (int iteration = 0; iteration < settings.Iterations; ++iteration)
     {
       progress.Report(static_cast<double>(iteration) / settings.Iterations);
-      this->Iterate(lists);
+      this->Iterate(lists, given);
     }
     Points normals(count, 3);
     for (Index f = 0; f < count; ++f)
@@ -213,7 +215,7 @@ public:
     return normals;
   }
 
-  Energy MeasureEnergy() const
+  Energy MeasureEnergy(const Points& given) const
   {
     const NormalVariationSettings& settings = this->Settings;
     double energy = 0.0;
@@ -240,7 +242,7 @@ public:
       const double area = this->Areas[f];
       for (int c = 0; c < 3; ++c)
       {
-        const double d = this->Given(f, c);
+        const double d = given(f, c);
         const auto square = [](double x) { return x * x; };
         const auto& x = state.Rows;
         energy +=
@@ -257,19 +259,18 @@ private:
   static std::size_t PlaceOf(Index i) { return 9 * static_cast<std::size_t>(i); }
 
   /// The given normals without slopes.
-  void Start()
+  void Start(const Points& given)
   {
     const Index count = this->Graph.NumberOfFaces();
-    for (std::vector<double>* const list : { &this->State, &this->Forces, &this->Direction })
-    {
-      list->assign(PlaceOf(count), 0.0);
-    }
+    this->State.assign(PlaceOf(count), 0.0);
+    this->Forces.assign(PlaceOf(count), 0.0);
+    this->Direction.assign(PlaceOf(count), 0.0F);
     this->Multipliers.assign(PlaceOf(this->Edges.Size()), 0.0);
     for (Index f = 0; f < count; ++f)
     {
       for (int c = 0; c < 3; ++c)
       {
-        this->State[PlaceOf(f) + c] = this->Given(f, c);
+        this->State[PlaceOf(f) + c] = given(f, c);
       }
     }
   }
@@ -306,13 +307,13 @@ private:
         }
       }
     }
-    const Eigen::Matrix3d m = diagonal.inverse();
+    const Eigen::Matrix3f m = diagonal.inverse().cast<float>();
     this->Inverses[f] = { m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2) };
   }
 
   /// The multipliers of v = D x + b, and one step of descent of
   /// 1/2 x (M + D^T L D) x - (M d + D^T L (v - 2 b)) x.
-  void Iterate(const Lists& lists)
+  void Iterate(const Lists& lists, const Points& given)
   {
     const Index count = this->Graph.NumberOfFaces();
     ForEachBlock(this->Parallel, this->Edges.Size(),
@@ -325,9 +326,8 @@ private:
     const double descent = SumOfBlocks(this->Parallel, count,
       [&](Index block, Index begin, Index end)
       {
-        return FindDirections(lists, this->Given.data(), this->State.data(),
-          this->Multipliers.data(), this->Forces.data(), this->Direction.data(), curvatures[block],
-          begin, end);
+        return FindDirections(lists, given.data(), this->State.data(), this->Multipliers.data(),
+          this->Forces.data(), this->Direction.data(), curvatures[block], begin, end);
       });
     double curvature = SumOfBlocks(this->Parallel, this->Edges.Size(),
       [&](Index, Index begin, Index end)
@@ -346,7 +346,7 @@ private:
       {
         for (std::size_t k = PlaceOf(begin); k < PlaceOf(end); ++k)
         {
-          this->State[k] += length * this->Direction[k];
+          this->State[k] += length * static_cast<double>(this->Direction[k]);
         }
       });
   }
@@ -357,11 +357,10 @@ private:
   VariationEdges Edges;
   std::vector<Inverse> Inverses;
   Vector Areas; ///< over their mean
-  Points Given;
   // Lists of blocks, see LoadBlock().
   std::vector<double> State; ///< (n, u); no entries before the first Minimize()
   std::vector<double> Forces; ///< D^T L b
-  std::vector<double> Direction;
+  std::vector<float> Direction;
   std::vector<double> Multipliers; ///< per edge: b
 };
 
@@ -390,9 +389,9 @@ Points NormalVariation::Minimize(
   return this->Work->Minimize(given, settings, progress);
 }
 
-NormalVariation::Energy NormalVariation::MeasureEnergy() const
+NormalVariation::Energy NormalVariation::MeasureEnergy(const Points& given) const
 {
-  return this->Work->MeasureEnergy();
+  return this->Work->MeasureEnergy(given);
 }
 
 } // namespace SurfaceDiffusion

@@ -55,13 +55,13 @@ public:
     const ProgressMonitor& progress = ProgressMonitor());
 
   /// The energy of (n, u), and how far at most it is above its minimum: the energy less that of the
-  /// dual problem at the multipliers. Of the given normals and settings of the last Minimize().
+  /// dual problem at the multipliers. given, and the settings: of the last Minimize().
   struct Energy
   {
     double Value = 0.0;
     double Gap = 0.0;
   };
-  Energy MeasureEnergy() const;
+  Energy MeasureEnergy(const Points& given) const;
 
 private:
   class Splitting;

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -53,6 +51,7 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   const TriangleMesh mesh(part.Places, part.Faces, parallel);
   const double unit = mesh.LengthUnit();
   const Points points = GatherVertices(mesh, part.Places) / unit;
+  progress.Report(0.02);
   const CorrelatedNoise correlated = EstimateCorrelatedNoise(mesh, points, parallel);
   const double noise = settings.NoiseLevel > 0.0
     ? settings.NoiseLevel / unit
@@ -70,38 +69,19 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   {
     isFixed.push_back(fixed[mesh.InputVertex()[i]]);
   }
-  const FaceGraph graph(mesh, parallel);
-  progress.Report(0.1);
   const double h = mesh.MeanEdgeLength();
-  const ProgressMonitor rest = progress.Part(0.1, 1.0);
-  const auto denoise = [&](const DenoisingScheme& scheme, const ProgressMonitor& share)
-  { return DenoiseWithScheme(graph, points, isFixed, noise, scheme, parallel, share); };
-  const DenoisingScheme sharp = SchemeFor(SurfaceKind::Sharp, noise / h);
-  const DenoisingScheme smooth = SchemeFor(SurfaceKind::Smooth, noise / h);
-  Points moved;
-  result.Type = settings.Type == SurfaceType::Automatic ? SurfaceType::CAD : settings.Type;
-  if (correlated.Length > 0.0)
-  {
-    moved = denoise(SchemeForCorrelatedNoise(correlated.Length / h), rest);
-  }
-  else if (settings.Type != SurfaceType::Automatic)
-  {
-    moved = denoise(settings.Type == SurfaceType::CAD ? sharp : smooth, rest);
-  }
-  else if (std::optional<Points> found =
-             DenoiseUnlessDetailsAreLost(graph, points, isFixed, noise, sharp, parallel, rest))
-  {
-    moved = std::move(*found);
-  }
-  else
-  {
-    moved = denoise(smooth, rest.Part(0.5, 1.0));
-    result.Type = SurfaceType::Organic;
-  }
+  const bool isCorrelated = correlated.Length > 0.0;
+  const DenoisingScheme scheme = isCorrelated ? SchemeForCorrelatedNoise(correlated.Length / h)
+                                              : SchemeForIndependentNoise(noise / h);
+  const SurfaceType type = isCorrelated ? SurfaceType::CAD : settings.Type;
+  const DenoisedSurface denoised = DenoiseWithScheme(
+    mesh, points, isFixed, noise, scheme, type, parallel, progress.Part(0.05, 1.0));
+  result.Type = settings.Type == SurfaceType::Automatic ? denoised.Type : settings.Type;
   result.CorrelationLength = correlated.Length * unit;
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
-    result.Displacements.row(mesh.InputVertex()[i]) = unit * (moved.row(i) - points.row(i));
+    result.Displacements.row(mesh.InputVertex()[i]) =
+      unit * (denoised.Moved.row(i) - points.row(i));
   }
   return result;
 }

@@ -2,18 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Geometry/FaceNormalFilter.h"
+#include "Core/Geometry/DenoisingScheme.h"
 
 namespace SurfaceDiffusion
 {
-
-/// The kind of surface that a user asks for.
-enum class SurfaceType
-{
-  Automatic, ///< by the angles at the edges of the filtered surface
-  CAD,
-  Organic
-};
 
 struct DenoisingSettings
 {
@@ -48,24 +40,27 @@ struct DenoisingReport
 /// are oriented first (see OrientTriangles()), and the result does not depend on the numbering of
 /// vertices and triangles.
 ///
-/// Each iteration filters the normals of the present surface and fits the given points to them
-/// with FitToNormals(): block descent on an energy of positions and normals, whose weights follow
-/// from the noise level. The first iterations use FilterNormals(), which suits piecewise constant
-/// normals and sharpens edges. The last ones use FitLinearNormals() with the normals of the present
-/// surface as guide, for piecewise linear normals, and TurnFlippedFaces(). On sharp surfaces,
+/// Each iteration filters the normals of the present surface and moves the points towards the fit of
+/// the given points to them, FitToNormals(), by one step of conjugate gradients: few steps
+/// regularise. The first iterations use FilterNormals(), which suits piecewise constant normals and
+/// sharpens edges. The second ones use FitLinearNormals() with the normals of the present surface as
+/// guide, for piecewise linear normals, and TurnFlippedFaces(). On surfaces of the type CAD,
 /// iterations with NormalVariation follow, and a fit to the last normals that is nearly solved.
 /// Tangential displacements are small, so that triangles and boundaries keep their shape. A noise
 /// level of 0 leaves the points as they are.
 ///
-/// Displacements along the normal should have the variance of the noise (the discrepancy
-/// principle). If their median shows more, the fidelity grows. On organic surfaces it grows and
-/// falls per vertex, by local means of the squared displacements (G. Gilboa, N. Sochen, Y. Zeevi,
+/// Displacements along the normal should resemble the noise, in two ways. They should have its
+/// variance (the discrepancy principle): during the first iterations the fidelity grows and falls
+/// per vertex, by local means of the squared displacements (G. Gilboa, N. Sochen, Y. Zeevi,
 /// Variational Denoising of Partly Textured Images by Spatially Varying Constraints, IEEE
-/// Transactions on Image Processing 15(8), 2006), so that regions of fine details keep them.
+/// Transactions on Image Processing 15(8), 2006). And they should be as white (see
+/// DisplacementStatistics): the steps of the second iterations end where the displacements around a
+/// vertex approach that of independent noise, so that regions of fine details keep them, and others
+/// become smooth.
 ///
-/// If the type is Automatic, the scheme for sharp surfaces is tried first, and left after its second
-/// stage if displacements are then more alike at neighbours than independent noise: it has removed
-/// details, which are of a few triangles on organic surfaces.
+/// If the type is Automatic, the variation of normals is minimised, too, and its result is kept if
+/// the displacements are then as white as independent noise. Otherwise it has removed details, which
+/// are of a few triangles on organic surfaces.
 ///
 /// Noise that is correlated over several edges has a scheme of its own, SchemeForCorrelatedNoise().
 ///

@@ -19,9 +19,10 @@ struct VariationBlock
 };
 
 /// Block i of a list without the zeros, nine numbers each.
-inline VariationBlock LoadBlock(const double* list, Index i)
+template <typename Number>
+VariationBlock LoadBlock(const Number* list, Index i)
 {
-  const double* const p = list + 9 * static_cast<std::ptrdiff_t>(i);
+  const Number* const p = list + 9 * static_cast<std::ptrdiff_t>(i);
   VariationBlock block;
   for (int c = 0; c < 3; ++c)
   {
@@ -32,14 +33,15 @@ inline VariationBlock LoadBlock(const double* list, Index i)
   return block;
 }
 
-inline void StoreBlock(double* list, Index i, const VariationBlock& block)
+template <typename Number>
+void StoreBlock(Number* list, Index i, const VariationBlock& block)
 {
-  double* const p = list + 9 * static_cast<std::ptrdiff_t>(i);
+  Number* const p = list + 9 * static_cast<std::ptrdiff_t>(i);
   for (int c = 0; c < 3; ++c)
   {
-    p[c] = block.Rows[0][c];
-    p[3 + c] = block.Rows[1][c];
-    p[6 + c] = block.Rows[2][c];
+    p[c] = static_cast<Number>(block.Rows[0][c]);
+    p[3 + c] = static_cast<Number>(block.Rows[1][c]);
+    p[6 + c] = static_cast<Number>(block.Rows[2][c]);
   }
 }
 

@@ -71,7 +71,7 @@ def add_denoise_mesh(commands):
                          "more (default: measured)")
     parser.add_argument("--type", choices=("automatic", "cad", "organic"), default="automatic",
                         help="cad: smooth faces with sharp edges; organic: smooth shapes with "
-                             "details, such as scans; automatic: found by the angles at edges "
+                             "details, such as scans; automatic: cad unless details are lost "
                              "(default)")
     common.merge(parser)
     parser.add_argument("--fixed", metavar="FILE",
