@@ -73,12 +73,12 @@ class MeshDenoising(unittest.TestCase):
 
     def test_a_cad_shape_keeps_its_edges(self):
         case = Case("fandisk", 0.3)
-        self.check_cad(case, 3.2, 3)
+        self.check_cad(case, 1.75, 4)
         _, model = case.denoise()
         self.assertLess(abs(model.GetEffectiveNoiseLevel() / case.length - 0.3), 0.04)
 
     def test_impulses_of_a_cad_shape_are_removed(self):
-        self.check_cad(Case("fandisk", 0.5, 0.5), 3.2, 10)
+        self.check_cad(Case("fandisk", 0.5, 0.5), 1.75, 10)
 
     def test_a_scan_is_closer_than_the_best_low_pass(self):
         case = Case("bear", 0.2)

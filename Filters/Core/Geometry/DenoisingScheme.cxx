@@ -181,7 +181,7 @@ private:
       variation.SetWeights(this->LastNormals, scheme.VariationRange);
       const double relative = this->RelativePrecision();
       this->Fit(this->LastNormals, scheme.VariationFidelity * relative * relative,
-        scheme.VariationFitIterations, part.Part(0.8, 1.0));
+        scheme.VariationTangentialFidelity, scheme.VariationFitIterations, part.Part(0.8, 1.0));
       TurnFlippedFaces(mesh, this->LastNormals, this->Fixed, this->Moved);
     }
   }
@@ -191,7 +191,7 @@ private:
     const double relative = this->RelativePrecision();
     this->Fit(this->LastNormals,
       std::min(relative, relative * relative) * this->Scheme.FinalFidelity,
-      this->Scheme.FinalFitIterations, progress);
+      this->Scheme.VariationTangentialFidelity, this->Scheme.FinalFitIterations, progress);
     TurnFlippedFaces(this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved);
   }
 
@@ -234,15 +234,17 @@ private:
   void Step(const Points& normals, double fidelity, const ProgressMonitor& progress)
   {
     const double relative = this->RelativePrecision();
-    this->Fit(normals, relative * relative * fidelity, 1, progress);
+    this->Fit(
+      normals, relative * relative * fidelity, this->Scheme.TangentialFidelity, 1, progress);
   }
 
-  void Fit(const Points& normals, double fidelity, int iterations, const ProgressMonitor& progress)
+  void Fit(const Points& normals, double fidelity, double tangentialFidelity, int iterations,
+    const ProgressMonitor& progress)
   {
     NormalFitSettings fit;
     fit.Fidelity = fidelity;
     fit.FidelityFactors = this->LocalFactors;
-    fit.TangentialFidelity = this->Scheme.TangentialFidelity;
+    fit.TangentialFidelity = tangentialFidelity;
     fit.MaximumNumberOfIterations = iterations;
     fit.OutlierDistance = this->Scheme.OutlierLevel * this->Noise;
     FitToNormals(this->Graph.Mesh, this->Given, normals, this->Fixed, fit, this->Moved,

@@ -30,7 +30,7 @@ struct DenoisingScheme
   NormalFilterSettings LinearFilter = { 0.3, 1.5 };
   int LinearIterations = 30;
   double LinearFidelity = 0.02; ///< the same
-  double TangentialFidelity = 2.0; ///< of all fits
+  double TangentialFidelity = 1.0; ///< of the fits of the first two stages
   /// Whether the fidelity and the second stage follow the displacements around each vertex: those of
   /// independent noise have its variance and are independent.
   bool IsNoiseIndependent = true;
@@ -44,6 +44,7 @@ struct DenoisingScheme
   double VariationFidelity = 0.1; ///< of the fit, for noise of 0.3 h
   int VariationSplittings = 12; ///< in each of them
   int VariationFitIterations = 6;
+  double VariationTangentialFidelity = 0.1; ///< of this fit and the last
   /// The end: one fit to the normals of the last iteration that is nearly solved, with a fidelity
   /// that grows less with weaker noise than those of the iterations, in which too loose a fit would
   /// lose details step by step.
