@@ -99,15 +99,26 @@ inline Eigen::RowVector3d FaceNormal(const Surface& s, Index t)
   return VectorArea(s, t).normalized();
 }
 
-/// Mean angle, in degrees, between the triangles of two surfaces.
-inline double MeanAngle(const Surface& a, const Surface& b)
+/// Mean angle, in degrees, between the triangles of two surfaces, of those that isOne(t) selects.
+template <typename IsOne>
+double MeanAngle(const Surface& a, const Surface& b, const IsOne& isOne)
 {
   double sum = 0.0;
+  Index count = 0;
   for (Index t = 0; t < a.NumberOfTriangles(); ++t)
   {
-    sum += std::acos(std::clamp(FaceNormal(a, t).dot(FaceNormal(b, t)), -1.0, 1.0));
+    if (isOne(t))
+    {
+      sum += std::acos(std::clamp(FaceNormal(a, t).dot(FaceNormal(b, t)), -1.0, 1.0));
+      ++count;
+    }
   }
-  return sum / a.NumberOfTriangles() * 180.0 / Pi;
+  return sum / count * 180.0 / Pi;
+}
+
+inline double MeanAngle(const Surface& a, const Surface& b)
+{
+  return MeanAngle(a, b, [](Index) { return true; });
 }
 
 inline Index NumberOfFlippedFaces(const Surface& s, const Surface& truth)

@@ -34,7 +34,7 @@ constexpr double GrowthOfRoughDetails = 1.6;
 /// Of EstimateCorrelatedNoise().
 constexpr Index EnoughWideNeighbourhoods = 1000;
 constexpr Index FewestVertices = 3200; ///< four times those within sixteen rings
-constexpr double LeastGrowth = 1.3; ///< from two to eight rings
+constexpr double LeastGrowth = 1.3; ///< from two to four rings
 constexpr double LargestLateGrowth = 1.6; ///< from eight to sixteen rings
 constexpr double SmallestCorrelated = 0.1; ///< in h
 constexpr double LargestCorrelated = 1.0; ///< in h
@@ -259,7 +259,7 @@ CorrelatedNoise EstimateCorrelatedNoise(
   const double first = deviations.front();
   const double eight = deviations[4];
   const double level = deviations.back();
-  const bool isFound = eight > LeastGrowth * first && level < LargestLateGrowth * eight &&
+  const bool isFound = deviations[2] > LeastGrowth * first && level < LargestLateGrowth * eight &&
     level > SmallestCorrelated * h && level < LargestCorrelated * h;
   if (!isFound)
   {
