@@ -74,8 +74,9 @@ public:
    * normal, in coordinate units. 0 or more. Default: 0, which means estimated for each connected
    * component. The estimate is the 0.3 quantile of the distances of points from quadrics through
    * their neighbours, over 0.3853, less the share of details, which have larger distances in larger
-   * neighbourhoods. Estimates below 0.005 mean edge lengths are taken for none. See
-   * GetEffectiveNoiseLevel().
+   * neighbourhoods. Estimates below 0.005 mean edge lengths are taken for none. Noise that
+   * neighbouring points share is not always estimated, since it resembles details; if its level is
+   * given, its length is found, too. See GetEffectiveNoiseLevel() and GetCorrelationLength().
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 

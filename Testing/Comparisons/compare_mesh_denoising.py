@@ -327,11 +327,15 @@ def main():
               if not arguments.only or mesh.name.startswith(tuple(arguments.only))]
     missing: dict[str, str] = {}
     programs = [program for program in PROGRAMS if usable(program, missing)]
-    versions = ", ".join(f"{name} {metadata.version(name)}" for name in
-                         dict.fromkeys(program.package for program in programs))
+    version = {program.package: metadata.version(program.package) for program in programs}
+    versions = ", ".join(f"{name} {number}" for name, number in version.items())
     date, former, kept = read_page(arguments.page) if arguments.again else ("", "", {})
-    if arguments.again and former.replace("\n", " ") != versions:
-        parser.error(f"--again needs the versions of the page, {former}; these are {versions}")
+    unlike = {f"{program.package} {version[program.package]}" for program in programs
+              if arguments.again and not program.name.startswith(arguments.again)}
+    unlike -= set(former.replace("\n", " ").split(", "))
+    if unlike:
+        parser.error(f"rows are kept of the versions of the page, {former}; these are "
+                     + ", ".join(sorted(unlike)))
     kept = {name: [row for row in rows if not row["program"].startswith(arguments.again)]
             for name, rows in kept.items()}
     results = {mesh.name: compare(mesh, programs, kept.get(mesh.name, [])) for mesh in meshes}

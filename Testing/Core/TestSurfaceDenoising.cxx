@@ -224,6 +224,31 @@ TEST(SurfaceDenoising, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
   }
 }
 
+/// It resembles details, below the level that is given.
+TEST(SurfaceDenoising, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
+{
+  for (const Surface& surface : { LBlock(24), Torus(120, 60), Icosphere(5) })
+  {
+    const TriangleMesh mesh(surface.Vertices, surface.Faces);
+    const double h = MeanEdge(mesh) * mesh.LengthUnit();
+    for (const double length : { 1.5, 2.0, 3.0 })
+    {
+      const Surface noisy = WithCorrelatedNoise(surface, 0.3, length);
+      DenoisingSettings settings;
+      settings.NoiseLevel = 0.3 * h;
+      DenoisingReport report;
+      const Surface result = Denoised(noisy, settings, {}, &report);
+      EXPECT_NEAR(report.CorrelationLength * mesh.LengthUnit() / h, length, 0.5 * length);
+      EXPECT_LT(MeanAngle(result, surface), 0.5 * MeanAngle(noisy, surface)) << length;
+    }
+    DenoisingSettings settings;
+    settings.NoiseLevel = 0.3 * h;
+    DenoisingReport report;
+    Denoised(NoisyAlongNormals(surface, 0.2), settings, {}, &report);
+    EXPECT_EQ(report.CorrelationLength, 0.0);
+  }
+}
+
 TEST(SurfaceDenoising, NeitherWhiteNoiseNorShapeIsCorrelatedNoise)
 {
   for (const Surface& surface :

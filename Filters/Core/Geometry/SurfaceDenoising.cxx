@@ -52,10 +52,9 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   const double unit = mesh.LengthUnit();
   const Points points = GatherVertices(mesh, part.Places) / unit;
   progress.Report(0.02);
-  const CorrelatedNoise correlated = EstimateCorrelatedNoise(mesh, points, parallel);
-  const double noise = settings.NoiseLevel > 0.0
-    ? settings.NoiseLevel / unit
-    : EstimateNoise(mesh, points, correlated, parallel);
+  const double given = settings.NoiseLevel / unit;
+  const CorrelatedNoise correlated = EstimateCorrelatedNoise(mesh, points, given, parallel);
+  const double noise = given > 0.0 ? given : EstimateNoise(mesh, points, correlated, parallel);
   progress.Report(0.05);
   DenoisedPart result;
   result.NoiseLevel = noise * unit;

@@ -35,6 +35,7 @@ constexpr double GrowthOfRoughDetails = 1.6;
 constexpr Index EnoughWideNeighbourhoods = 1000;
 constexpr Index FewestVertices = 3200; ///< four times those within sixteen rings
 constexpr double LeastGrowth = 1.3; ///< from two to four rings
+constexpr double LeastGrowthToLevel = 1.8; ///< the same, to a level that is given
 constexpr double LargestLateGrowth = 1.6; ///< from eight to sixteen rings
 constexpr double SmallestCorrelated = 0.1; ///< in h
 constexpr double LargestCorrelated = 1.0; ///< in h
@@ -246,9 +247,9 @@ double EstimateVertexNoise(
 }
 
 CorrelatedNoise EstimateCorrelatedNoise(
-  const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
+  const TriangleMesh& mesh, const Points& points, double given, const ParallelFor& parallel)
 {
-  if (mesh.NumberOfVertices() < FewestVertices)
+  if (mesh.NumberOfVertices() < FewestVertices && !(given > 0.0))
   {
     return CorrelatedNoise();
   }
@@ -256,15 +257,17 @@ CorrelatedNoise EstimateCorrelatedNoise(
   const std::vector<double> deviations =
     MeasureDeviations(mesh, points, rings, StrideFor(mesh, EnoughWideNeighbourhoods), parallel);
   const double h = mesh.MeanEdgeLength();
-  const double first = deviations.front();
-  const double eight = deviations[4];
-  const double level = deviations.back();
-  const bool isFound = deviations[2] > LeastGrowth * first && level < LargestLateGrowth * eight &&
-    level > SmallestCorrelated * h && level < LargestCorrelated * h;
-  if (!isFound)
+  const double growth = deviations[2] / deviations[0];
+  const double last = deviations.back();
+  const bool hasLevel = growth > LeastGrowth && last < LargestLateGrowth * deviations[4] &&
+    last > SmallestCorrelated * h && last < LargestCorrelated * h;
+  const bool reachesLevel =
+    growth > LeastGrowthToLevel && given * given > 2.0 * deviations[0] * deviations[0];
+  if (!hasLevel && !reachesLevel)
   {
     return CorrelatedNoise();
   }
+  const double level = given > 0.0 ? given : last;
   std::size_t k = 1;
   while (k + 1 < rings.size() && 2.0 * deviations[k] * deviations[k] < level * level)
   {
