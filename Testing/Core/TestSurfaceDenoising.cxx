@@ -227,7 +227,7 @@ TEST(SurfaceDenoising, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
 /// It resembles details, below the level that is given.
 TEST(SurfaceDenoising, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
 {
-  for (const Surface& surface : { LBlock(24), Torus(120, 60), Icosphere(5) })
+  for (const Surface& surface : { LBlock(32), Torus(120, 60), Icosphere(5) })
   {
     const TriangleMesh mesh(surface.Vertices, surface.Faces);
     const double h = MeanEdge(mesh) * mesh.LengthUnit();

@@ -249,7 +249,7 @@ double EstimateVertexNoise(
 CorrelatedNoise EstimateCorrelatedNoise(
   const TriangleMesh& mesh, const Points& points, double given, const ParallelFor& parallel)
 {
-  if (mesh.NumberOfVertices() < FewestVertices && !(given > 0.0))
+  if (mesh.NumberOfVertices() < FewestVertices)
   {
     return CorrelatedNoise();
   }

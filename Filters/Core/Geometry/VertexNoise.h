@@ -62,9 +62,9 @@ struct CorrelatedNoise
 /// level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of the level. Noise with
 /// L > 3 h does not reach its level within sixteen rings and is not found.
 ///
-/// given: the level, if it is known, otherwise 0. Then noise is correlated, too, if sigma_2^2 is less
-/// than half of its square and sigma_4 > 1.8 sigma_2, also on smaller surfaces, of all shapes, and up
-/// to L = 16/3 h: details have as large a growth, but are below the level that is to be removed.
+/// given: the level, if it is known, otherwise 0. Then noise of these surfaces is correlated, too, if
+/// sigma_2^2 is less than half of its square and sigma_4 > 1.8 sigma_2, up to L = 16/3 h: details have
+/// as large a growth, but are below the level that is to be removed.
 CorrelatedNoise EstimateCorrelatedNoise(const TriangleMesh& mesh, const Points& points,
   double given = 0.0, const ParallelFor& parallel = SerialFor());
 
