@@ -30,10 +30,10 @@
  * The displacements d along the normals decide when this ends, around each point: with the sums s_i
  * of d over point i and its neighbours, m_i points together, their whiteness
  * R = sum_i s_i^2 / m_i / sum_i d_i^2 is 1 for independent noise, smaller while noise is left, and
- * larger where details were removed. Steps become smaller from R = 0.55 on, and 0 at 0.75. On CAD
- * shapes the total generalised variation of the normals is minimised then (Z. Liu, Y. Li, W. Wang,
- * L. Liu, R. Chen, Mesh Total Generalized Variation for Denoising, TVCG 28(12), 2022), and 15 steps
- * towards the last normals follow.
+ * larger where details were removed. Steps become smaller from R = 0.55 on, and 0 at 0.75; there are
+ * up to 60. On CAD shapes, and for noise that is correlated over several edges, the total generalised
+ * variation of the normals is minimised then (Z. Liu, Y. Li, W. Wang, L. Liu, R. Chen, Mesh Total
+ * Generalized Variation for Denoising, TVCG 28(12), 2022), and 15 steps towards the last normals follow.
  *
  * Connected components have noise levels, types and units of length of their own, so that several
  * surfaces in one data set are denoised as each alone. Components with less than 200 points, too
@@ -93,8 +93,8 @@ public:
    * details of the size of a few triangles, such as scans. Automatic (the default): a component is
    * denoised as CAD, and this is kept if the displacements along the normals are then as white as
    * independent noise, R <= 1 within two standard deviations. Otherwise it is Organic: the variation
-   * of normals would lose details.
-   * Correlated noise has one method for both kinds, and counts as CAD.
+   * of normals would lose details. Noise that is found to be correlated has one method for both kinds,
+   * and counts as CAD under Automatic. With Organic, a given NoiseLevel is that of independent noise.
    */
   SURFACEDIFFUSION_CHOICE(SurfaceType);
   void SetSurfaceTypeToAutomatic() { this->SetSurfaceType(SURFACE_TYPE_AUTOMATIC); }

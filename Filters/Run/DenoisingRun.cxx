@@ -9,11 +9,13 @@ namespace SurfaceDiffusion
 
 void DenoisingRunSettings::Visit(SettingVisitor& visitor)
 {
-  visitor.Number({ "NoiseLevel", "coordinates",
-                   "How much noise is removed: the standard deviation of the displacement of the "
-                   "points along the normal, in the unit of the coordinates. 0: measured. Noise "
-                   "that neighbouring points share, as that of depth cameras, may need it: "
-                   "measured, it resembles details." },
+  visitor.Number(
+    { "NoiseLevel", "coordinates",
+      "How much noise is removed: the standard deviation of the displacement of the "
+      "points along the normal, in the unit of the coordinates. 0: measured. Noise "
+      "that neighbouring points share, as that of depth cameras, may need it: "
+      "measured, it resembles details. With the SurfaceType Organic, the level is that of "
+      "independent noise." },
     this->NoiseLevel, SettingRange::NonNegative());
   visitor.Choice({ "SurfaceType", "",
                    "CAD: smooth faces, which may meet in sharp edges. Organic: shapes with details "

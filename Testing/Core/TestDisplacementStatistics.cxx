@@ -118,13 +118,12 @@ TEST(DisplacementStatistics, FixedVerticesTakeNoPart)
   Vector noise = WhiteNoise(mesh.NumberOfVertices());
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
-    fixed[i] = torus.Vertices(mesh.InputVertex()[i], 1) > 0.0;
+    fixed[i] = UniformRandom(5, 0, i) < 0.5;
     noise[i] = fixed[i] ? 0.0 : noise[i];
   }
-  const DisplacementStatistics all(mesh, {});
   const DisplacementStatistics free(mesh, fixed);
   EXPECT_NEAR(free.Whiteness(noise), 1.0, 3.0 * free.WhitenessDeviation());
-  EXPECT_NEAR(free.WhitenessDeviation(), std::sqrt(2.0) * all.WhitenessDeviation(), 0.001);
+  EXPECT_LT(free.WhitenessDeviation(), 0.05);
 }
 
 TEST(DisplacementStatistics, DoesNotDependOnTheNumberOfThreads)

@@ -114,18 +114,18 @@ TEST(SurfaceDenoising, NoisyBlockRegainsItsPlanesAndSharpEdges)
     const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
     EXPECT_EQ(report.Type, SurfaceType::CAD);
     EXPECT_GT(MeanAngle(noisy, block), 80.0 * amount);
-    EXPECT_LT(MeanAngle(result, block), 0.8 + 8.0 * amount) << "noise " << amount;
+    EXPECT_LT(MeanAngle(result, block), 0.25 + 2.5 * amount) << "noise " << amount;
     EXPECT_NEAR(Volume(result) / Volume(block), 1.0, 0.005);
     EXPECT_LE(NumberOfFlippedFaces(result, block), NumberOfFlippedFaces(noisy, block));
   }
 }
 
-/// Without the final fit, 0.05 h leave more than 0.1 h.
+/// Without the final fit, 0.05 h leave 1.4 degrees.
 TEST(SurfaceDenoising, LessNoiseOfABlockLeavesSmallerAngles)
 {
   const Surface block = LBlock(24);
   double last = 0.0;
-  for (const auto& [amount, largest] : { std::pair(0.05, 1.3), { 0.1, 1.4 }, { 0.2, 1.65 } })
+  for (const auto& [amount, largest] : { std::pair(0.05, 0.3), { 0.1, 0.4 }, { 0.2, 0.7 } })
   {
     const double angle = MeanAngle(Denoised(NoisyAlongNormals(block, amount)), block);
     EXPECT_LT(angle, largest) << "noise " << amount;
@@ -252,8 +252,8 @@ TEST(SurfaceDenoising, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
 TEST(SurfaceDenoising, NeitherWhiteNoiseNorShapeIsCorrelatedNoise)
 {
   for (const Surface& surface :
-    { Icosphere(5), Torus(80, 40), LBlock(24), NoisyAlongNormals(Icosphere(5), 0.3),
-      NoisyAlongNormals(Torus(80, 40), 0.1), NoisyAlongNormals(LBlock(24), 0.3),
+    { Icosphere(5), Torus(80, 40), LBlock(32), NoisyAlongNormals(Icosphere(5), 0.3),
+      NoisyAlongNormals(Torus(80, 40), 0.1), NoisyAlongNormals(LBlock(32), 0.3),
       NoisyAlongNormals(HalfRoughTorus(120), 0.2), NoisyAlongNormals(HalfRoughTorus(120), 0.3) })
   {
     const TriangleMesh mesh(surface.Vertices, surface.Faces);
@@ -270,19 +270,19 @@ TEST(SurfaceDenoising, ImpulsiveNoiseOfABlockIsRemoved)
   const Surface noisy = NoisyAlongNormals(block, 0.5, 0.5);
   const Surface result = Denoised(noisy);
   EXPECT_GT(MeanAngle(noisy, block), 20.0);
-  EXPECT_LT(MeanAngle(result, block), 4.0);
+  EXPECT_LT(MeanAngle(result, block), 1.0);
 }
 
 TEST(SurfaceDenoising, SphereAndTorusAreNoOrganicSurfacesAndBecomeSmooth)
 {
-  for (const Surface& surface : { Icosphere(5), Torus(80, 40) })
+  for (const auto& [surface, angle] : { std::pair(Icosphere(5), 0.6), { Torus(80, 40), 1.8 } })
   {
     const Surface noisy = NoisyAlongNormals(surface, 0.3);
     DenoisingReport report;
     const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
     EXPECT_EQ(report.Type, SurfaceType::CAD);
     EXPECT_GT(MeanAngle(noisy, surface), 25.0);
-    EXPECT_LT(MeanAngle(result, surface), 2.0);
+    EXPECT_LT(MeanAngle(result, surface), angle);
     EXPECT_NEAR(Volume(result) / Volume(surface), 1.0, 0.005);
   }
 }
@@ -310,7 +310,7 @@ TEST(SurfaceDenoising, RoughPartsKeepTheirDetailsAndSmoothOnesBecomeSmooth)
       3.0;
   };
   for (const auto& [amount, rough, smooth] :
-    { std::tuple(0.1, 2.2, 1.2), { 0.2, 3.3, 1.7 }, { 0.3, 4.2, 2.5 } })
+    { std::tuple(0.1, 2.25, 1.2), { 0.2, 3.3, 1.7 }, { 0.3, 4.2, 2.5 } })
   {
     DenoisingReport report;
     const Surface result =
@@ -337,6 +337,43 @@ TEST(SurfaceDenoising, NoiseInAllDirectionsLeavesSharpEdges)
   }
   EXPECT_GT(MeanAngle(noisy, block), 20.0);
   EXPECT_LT(MeanAngle(Denoised(noisy), block), 1.2);
+}
+
+/// Steps of a part of their length leave them, unless they are turned at the end.
+TEST(SurfaceDenoising, OrganicSurfacesHaveFewFlippedTriangles)
+{
+  const Surface surface = RoughTorus(80);
+  const TriangleMesh mesh(surface.Vertices, surface.Faces);
+  Surface noisy = surface;
+  for (Index i = 0; i < noisy.NumberOfVertices(); ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      noisy.Vertices(i, k) += 0.3 * MeanEdge(mesh) * mesh.LengthUnit() * Gaussian(3, k, i);
+    }
+  }
+  DenoisingSettings settings;
+  settings.Type = SurfaceType::Organic;
+  EXPECT_GT(NumberOfFlippedFaces(noisy, surface), 500);
+  EXPECT_LT(NumberOfFlippedFaces(Denoised(noisy, settings), surface), 20);
+}
+
+/// Their displacements would be several times the noise.
+TEST(SurfaceDenoising, DetailsOfFewTrianglesAreNoNoiseOfAGivenLevel)
+{
+  for (const Index across : { 40, 60 })
+  {
+    const Surface surface = RoughTorus(across);
+    const TriangleMesh mesh(surface.Vertices, surface.Faces);
+    DenoisingSettings settings;
+    settings.NoiseLevel = 0.1 * MeanEdge(mesh) * mesh.LengthUnit();
+    settings.Type = SurfaceType::Organic;
+    const Surface noisy = NoisyAlongNormals(surface, 0.1);
+    DenoisingReport report;
+    const double angle = MeanAngle(Denoised(noisy, settings, {}, &report), surface);
+    EXPECT_LT(angle, 0.95 * MeanAngle(noisy, surface)) << across;
+    EXPECT_EQ(report.CorrelationLength, 0.0);
+  }
 }
 
 TEST(SurfaceDenoising, SurfacesWithoutNoiseStay)
@@ -473,10 +510,14 @@ TEST(SurfaceDenoising, FollowsRotationsTranslationsAndScalesOfTheSurface)
 
 TEST(SurfaceDenoising, DoesNotDependOnTheNumberOfThreads)
 {
-  const Surface noisy = NoisyAlongNormals(LBlock(24), 0.3);
-  const Surface one = Denoised(noisy);
-  const ThreadedFor threads(3);
-  EXPECT_EQ(Denoised(noisy, DenoisingSettings(), {}, nullptr, threads).Vertices, one.Vertices);
+  // so large that loops over vertices have several blocks
+  for (const Surface& noisy :
+    { NoisyAlongNormals(LBlock(32), 0.3), NoisyAlongNormals(RoughTorus(80), 0.2) })
+  {
+    const Surface one = Denoised(noisy);
+    const ThreadedFor threads(3);
+    EXPECT_EQ(Denoised(noisy, DenoisingSettings(), {}, nullptr, threads).Vertices, one.Vertices);
+  }
 }
 
 TEST(SurfaceDenoising, DoesNotDependOnTheNumberingOfPoints)
@@ -737,7 +778,7 @@ TEST(SurfaceDenoising, BoundariesDoNotShrink)
   const Surface flat = Strip(30, 20, 3.0, 2.0);
   const Surface noisy = NoisyAlongNormals(flat, 0.3);
   const Surface result = Denoised(noisy);
-  EXPECT_LT(MeanAngle(result, flat), 3.0);
+  EXPECT_LT(MeanAngle(result, flat), 1.0);
   const TriangleMesh mesh(flat.Vertices, flat.Faces);
   const double h = MeanEdge(mesh) * mesh.LengthUnit();
   for (Index i = 0; i < flat.NumberOfVertices(); ++i)

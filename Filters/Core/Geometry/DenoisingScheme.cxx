@@ -4,6 +4,9 @@
 
 #include "Core/Geometry/DisplacementStatistics.h"
 #include "Core/Geometry/FaceFlips.h"
+#include "Core/Geometry/LinearNormals.h"
+#include "Core/Geometry/NormalFit.h"
+#include "Core/Geometry/NormalVariation.h"
 #include "Core/Geometry/VertexNoise.h"
 
 #include <algorithm>
@@ -38,6 +41,10 @@ constexpr double LargestFactor = 100.0;
 /// further steps would remove.
 constexpr double WhitenessOfWholeSteps = 0.55;
 constexpr double WhitenessOfNoSteps = 0.75;
+/// Details of short wavelength leave displacements that are not alike at neighbours but larger than
+/// the noise: no steps from this mean square on, in squares of the noise. Impulsive noise, whose level
+/// is that of fewer vertices, and noise that is underestimated have up to 2.
+constexpr double LargestMeanSquare = 3.0;
 /// The second stage ends when steps are this small on average.
 constexpr double SmallestStep = 0.01;
 
@@ -115,7 +122,7 @@ private:
         if (shares.sum() <= SmallestStep * static_cast<double>(shares.size()))
         {
           progress.Report(1.0);
-          return;
+          break;
         }
         before = this->Moved;
       }
@@ -124,11 +131,22 @@ private:
       this->LastNormals =
         FitLinearNormals(this->Graph, this->Geometry, guide, filter, this->Parallel);
       this->Step(this->LastNormals, this->Scheme.LinearFidelity, part);
-      TurnFlippedFaces(this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved);
+      this->TurnFlippedFaces();
       for (Index k = 0; k < static_cast<Index>(shares.size()); ++k)
       {
         this->Moved.row(k) = before.row(k) + shares[k] * (this->Moved.row(k) - before.row(k));
       }
+    }
+    this->TurnFlippedFaces(); // those that shares of steps have left
+  }
+
+  /// Of the last normals, if there are any.
+  void TurnFlippedFaces()
+  {
+    if (this->LastNormals.rows() > 0)
+    {
+      SurfaceDiffusion::TurnFlippedFaces(
+        this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved);
     }
   }
 
@@ -144,9 +162,11 @@ private:
   /// Per vertex, by the whiteness of the displacements around it.
   Vector SharesOfSteps() const
   {
-    const Vector whiteness =
-      this->Statistics.LocalWhiteness(this->DisplacementsAlongNormals(this->Geometry.Normals));
+    const Vector displacements = this->DisplacementsAlongNormals(this->Geometry.Normals);
+    const Vector whiteness = this->Statistics.LocalWhiteness(displacements);
+    const Vector squares = this->Statistics.LocalMeans(displacements.cwiseAbs2());
     return ((WhitenessOfNoSteps - whiteness.array()) / (WhitenessOfNoSteps - WhitenessOfWholeSteps))
+      .cwiseMin(LargestMeanSquare - squares.array())
       .cwiseMax(0.0)
       .cwiseMin(1.0);
   }
@@ -182,7 +202,7 @@ private:
       const double relative = this->RelativePrecision();
       this->Fit(this->LastNormals, scheme.VariationFidelity * relative * relative,
         scheme.VariationTangentialFidelity, scheme.VariationFitIterations, part.Part(0.8, 1.0));
-      TurnFlippedFaces(mesh, this->LastNormals, this->Fixed, this->Moved);
+      this->TurnFlippedFaces();
     }
   }
 
@@ -192,13 +212,15 @@ private:
     this->Fit(this->LastNormals,
       std::min(relative, relative * relative) * this->Scheme.FinalFidelity,
       this->Scheme.VariationTangentialFidelity, this->Scheme.FinalFitIterations, progress);
-    TurnFlippedFaces(this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved);
+    this->TurnFlippedFaces();
   }
 
   bool LeavesOnlyNoise() const
   {
     const Vector displacements = this->DisplacementsAlongNormals(this->LastNormals);
-    return this->Statistics.Whiteness(displacements) <=
+    return displacements.squaredNorm() <=
+      LargestMeanSquare * static_cast<double>(displacements.size()) &&
+      this->Statistics.Whiteness(displacements) <=
       1.0 + 2.0 * this->Statistics.WhitenessDeviation();
   }
 

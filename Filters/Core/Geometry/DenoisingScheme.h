@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Geometry/LinearNormals.h"
-#include "Core/Geometry/NormalFit.h"
-#include "Core/Geometry/NormalVariation.h"
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Geometry/FaceNormalFilter.h"
 
 #include <vector>
 
@@ -14,18 +13,19 @@ namespace SurfaceDiffusion
 /// The kind of surface that a user asks for.
 enum class SurfaceType
 {
-  Automatic, ///< found by what the scheme for CAD removes
+  Automatic, ///< found by what the third stage removes
   CAD, ///< smooth faces, which may meet in sharp edges
   Organic ///< details of a few triangles
 };
 
 /// How normals are filtered and vertices fitted, in mean edge lengths h. DenoiseSurface() says why.
+/// Fidelities are proportional to the inverse of the variance of the noise.
 struct DenoisingScheme
 {
   /// The first stage: FilterNormals(), which finds the edges of the surface.
   NormalFilterSettings Filter;
   int Iterations = 10;
-  double Fidelity = 0.09; ///< of the fit, for noise of 0.3 h; proportional to its inverse variance
+  double Fidelity = 0.09; ///< of the fit, for noise of 0.3 h
   /// The second stage: FitLinearNormals(), which regains the curvature that the first flattened.
   NormalFilterSettings LinearFilter = { 0.3, 1.5 };
   int LinearIterations = 30;

@@ -38,8 +38,22 @@ DisplacementStatistics::DisplacementStatistics(
 
 double DisplacementStatistics::Whiteness(const Vector& displacements) const
 {
-  const auto sums = this->FindSquares(displacements).colwise().sum().eval();
-  return sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
+  double squaresOfSums = 0.0;
+  double squares = 0.0;
+  for (Index i = 0; i < static_cast<Index>(displacements.size()); ++i)
+  {
+    if (!this->IsFixed(i))
+    {
+      double sum = displacements[i];
+      for (Offset k = this->Around.Begin[i]; k < this->Around.Begin[i + 1]; ++k)
+      {
+        sum += displacements[this->Around.Entries[k]];
+      }
+      squaresOfSums += sum * sum / this->FreeCount(i);
+      squares += displacements[i] * displacements[i];
+    }
+  }
+  return squares > 0.0 ? squaresOfSums / squares : 0.0;
 }
 
 double DisplacementStatistics::WhitenessDeviation() const
@@ -49,9 +63,19 @@ double DisplacementStatistics::WhitenessDeviation() const
   for (Index i = 0; i + 1 < static_cast<Index>(this->Around.Begin.size()); ++i)
   {
     free += this->IsFixed(i) ? 0.0 : 1.0;
-    terms += this->IsFixed(i) ? 0.0 : this->Count(i);
+    terms += this->IsFixed(i) ? 0.0 : this->FreeCount(i);
   }
   return std::sqrt(2.0 * terms) / std::max(1.0, free);
+}
+
+double DisplacementStatistics::FreeCount(Index i) const
+{
+  double count = 1.0;
+  for (Offset k = this->Around.Begin[i]; k < this->Around.Begin[i + 1]; ++k)
+  {
+    count += this->IsFixed(this->Around.Entries[k]) ? 0.0 : 1.0;
+  }
+  return count;
 }
 
 Vector DisplacementStatistics::LocalWhiteness(const Vector& displacements) const

@@ -29,13 +29,14 @@ public:
   DisplacementStatistics(const TriangleMesh& mesh, const std::vector<char>& fixed,
     const ParallelFor& parallel = SerialFor());
 
-  /// R of all vertices; 0 if none has moved.
+  /// R of all vertices, with sums over those that are not fixed; 0 if none has moved.
   double Whiteness(const Vector& displacements) const;
   /// The standard deviation of R for independent noise: sums share terms, so that there are as many
   /// independent ones as sums without a common term.
   double WhitenessDeviation() const;
   /// Per vertex, R of the vertices around it, with weights that fall over about four edges; 0 where
-  /// none has moved.
+  /// none has moved. Fixed ones count as neighbours that stay, so that steps beside them, which they
+  /// guide, end later.
   Vector LocalWhiteness(const Vector& displacements) const;
   /// Per vertex, the mean of these numbers over those around it, about two edges.
   Vector LocalMeans(const Vector& values) const;
@@ -46,6 +47,7 @@ private:
   {
     return static_cast<double>(1 + this->Around.Begin[i + 1] - this->Around.Begin[i]);
   }
+  double FreeCount(Index i) const; ///< of it and the neighbours that are not fixed
   /// Per vertex: s^2 / m and d^2.
   using Squares = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
   Squares FindSquares(const Vector& displacements) const;

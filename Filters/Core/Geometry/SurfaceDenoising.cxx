@@ -53,7 +53,9 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   const Points points = GatherVertices(mesh, part.Places) / unit;
   progress.Report(0.02);
   const double given = settings.NoiseLevel / unit;
-  const CorrelatedNoise correlated = EstimateCorrelatedNoise(mesh, points, given, parallel);
+  const CorrelatedNoise correlated = given > 0.0 && settings.Type == SurfaceType::Organic
+    ? CorrelatedNoise()
+    : EstimateCorrelatedNoise(mesh, points, given, parallel);
   const double noise = given > 0.0 ? given : EstimateNoise(mesh, points, correlated, parallel);
   progress.Report(0.05);
   DenoisedPart result;

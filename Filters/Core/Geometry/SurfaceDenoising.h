@@ -55,14 +55,15 @@ struct DenoisingReport
 /// Variational Denoising of Partly Textured Images by Spatially Varying Constraints, IEEE
 /// Transactions on Image Processing 15(8), 2006). And they should be as white (see
 /// DisplacementStatistics): the steps of the second iterations end where the displacements around a
-/// vertex approach that of independent noise, so that regions of fine details keep them, and others
+/// vertex have nearly that of independent noise, so that regions of fine details keep them, and others
 /// become smooth.
 ///
 /// If the type is Automatic, the variation of normals is minimised, too, and its result is kept if
 /// the displacements are then as white as independent noise. Otherwise it has removed details, which
 /// are of a few triangles on organic surfaces.
 ///
-/// Noise that is correlated over several edges has a scheme of its own, SchemeForCorrelatedNoise().
+/// Noise that is correlated over several edges has a scheme of its own, SchemeForCorrelatedNoise(). A
+/// given level of a surface of the type Organic is that of independent noise.
 ///
 /// points: per vertex of the mesh; fixed: per vertex, nonzero for vertices that stay, may be empty.
 /// Throws Aborted.

@@ -19,7 +19,6 @@ namespace
 
 constexpr std::size_t SmallestNeighbourhood = 9;
 constexpr double LargestLeverage = 2.0;
-constexpr double MedianOfNormalDistribution = 0.6745; ///< of |x| for the standard deviation 1
 /// The fraction of vertices that must be away from edges and without outliers, and the quantile of
 /// |x| for the standard deviation 1.
 constexpr double NoiseFraction = 0.3;
@@ -222,11 +221,6 @@ double QuantileOf(std::vector<double>& values, double fraction)
   return *quantile;
 }
 
-double MedianDeviation(std::vector<double>& absoluteValues)
-{
-  return QuantileOf(absoluteValues, 0.5) / MedianOfNormalDistribution;
-}
-
 double EstimateVertexNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
@@ -257,12 +251,15 @@ CorrelatedNoise EstimateCorrelatedNoise(
   const std::vector<double> deviations =
     MeasureDeviations(mesh, points, rings, StrideFor(mesh, EnoughWideNeighbourhoods), parallel);
   const double h = mesh.MeanEdgeLength();
+  if (given > 0.0 && given * given <= 2.0 * deviations[0] * deviations[0])
+  {
+    return CorrelatedNoise(); // independent noise explains the level
+  }
   const double growth = deviations[2] / deviations[0];
   const double last = deviations.back();
   const bool hasLevel = growth > LeastGrowth && last < LargestLateGrowth * deviations[4] &&
     last > SmallestCorrelated * h && last < LargestCorrelated * h;
-  const bool reachesLevel =
-    growth > LeastGrowthToLevel && given * given > 2.0 * deviations[0] * deviations[0];
+  const bool reachesLevel = given > 0.0 && growth > LeastGrowthToLevel;
   if (!hasLevel && !reachesLevel)
   {
     return CorrelatedNoise();

@@ -12,10 +12,6 @@ namespace SurfaceDiffusion
 /// The value below which this fraction of them, below 1, is; 0 without values. Reorders them.
 double QuantileOf(std::vector<double>& values, double fraction);
 
-/// The standard deviation of a normal distribution of mean 0 whose absolute values have this
-/// median.
-double MedianDeviation(std::vector<double>& absoluteValues);
-
 /// An estimate of the noise of the vertices of a surface: the standard deviation of their
 /// displacement along the normal, in the unit of the points.
 ///
