@@ -30,10 +30,11 @@
  * The displacements d along the normals decide when this ends, around each point: with the sums s_i
  * of d over point i and its neighbours, m_i points together, their whiteness
  * R = sum_i s_i^2 / m_i / sum_i d_i^2 is 1 for independent noise, smaller while noise is left, and
- * larger where details were removed. Steps become smaller from R = 0.55 on, and 0 at 0.75; there are
- * up to 60. On CAD shapes, and for noise that is correlated over several edges, the total generalised
- * variation of the normals is minimised then (Z. Liu, Y. Li, W. Wang, L. Liu, R. Chen, Mesh Total
- * Generalized Variation for Denoising, TVCG 28(12), 2022), and 15 steps towards the last normals follow.
+ * larger where details were removed. Steps become smaller from R = 0.55 on, and 0 at 0.75, and
+ * also from a mean of d^2 of 2 variances of the noise on, and 0 at 3; there are up to 60. On CAD
+ * shapes, and for noise that is correlated over several edges, the total generalised variation of
+ * the normals is minimised then (Z. Liu, Y. Li, W. Wang, L. Liu, R. Chen, Mesh Total Generalized
+ * Variation for Denoising, TVCG 28(12), 2022), and 15 steps towards the last normals follow.
  *
  * Connected components have noise levels, types and units of length of their own, so that several
  * surfaces in one data set are denoised as each alone. Components with less than 200 points, too

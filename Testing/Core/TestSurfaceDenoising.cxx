@@ -346,20 +346,31 @@ TEST(SurfaceDenoising, RoughPartsKeepTheirDetailsAndSmoothOnesBecomeSmooth)
   }
 }
 
+namespace
+{
+
+/// Gaussian noise in each coordinate, in mean edge lengths.
+Surface NoisyInAllDirections(Surface s, double amount)
+{
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  const double deviation = amount * MeanEdge(mesh) * mesh.LengthUnit();
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      s.Vertices(i, k) += deviation * Gaussian(3, k, i);
+    }
+  }
+  return s;
+}
+
+} // namespace
+
 /// Sharp edges need their points to move along the faces.
 TEST(SurfaceDenoising, NoiseInAllDirectionsLeavesSharpEdges)
 {
   const Surface block = LBlock(24);
-  const TriangleMesh mesh(block.Vertices, block.Faces);
-  const double h = MeanEdge(mesh) * mesh.LengthUnit();
-  Surface noisy = block;
-  for (Index i = 0; i < noisy.NumberOfVertices(); ++i)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      noisy.Vertices(i, k) += 0.2 * h * Gaussian(3, k, i);
-    }
-  }
+  const Surface noisy = NoisyInAllDirections(block, 0.2);
   EXPECT_GT(MeanAngle(noisy, block), 20.0);
   EXPECT_LT(MeanAngle(Denoised(noisy), block), 1.2);
 }
@@ -368,15 +379,7 @@ TEST(SurfaceDenoising, NoiseInAllDirectionsLeavesSharpEdges)
 TEST(SurfaceDenoising, OrganicSurfacesHaveFewFlippedTriangles)
 {
   const Surface surface = RoughTorus(80);
-  const TriangleMesh mesh(surface.Vertices, surface.Faces);
-  Surface noisy = surface;
-  for (Index i = 0; i < noisy.NumberOfVertices(); ++i)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      noisy.Vertices(i, k) += 0.3 * MeanEdge(mesh) * mesh.LengthUnit() * Gaussian(3, k, i);
-    }
-  }
+  const Surface noisy = NoisyInAllDirections(surface, 0.3);
   DenoisingSettings settings;
   settings.Type = SurfaceType::Organic;
   EXPECT_GT(NumberOfFlippedFaces(noisy, surface), 500);

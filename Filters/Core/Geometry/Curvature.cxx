@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Curvature.h"
 
+#include "Core/Foundation/IndexLists.h"
 #include "Core/Geometry/HeatRegression.h"
 #include "Core/Geometry/OrientedNormals.h"
 
@@ -43,14 +44,9 @@ void FindDisk(const TriangleMesh& mesh, Index centre, std::vector<Index>& disk)
       }
     }
   };
-  const auto makeUnique = [&]
-  {
-    std::sort(disk.begin(), disk.end());
-    disk.erase(std::unique(disk.begin(), disk.end()), disk.end());
-  };
   disk.clear();
   addNeighbours(centre);
-  makeUnique();
+  SortUnique(disk, 0);
   const std::size_t ring = disk.size();
   for (std::size_t k = 0; k < ring && ring <= static_cast<std::size_t>(manyTriangles); ++k)
   {
@@ -60,7 +56,7 @@ void FindDisk(const TriangleMesh& mesh, Index centre, std::vector<Index>& disk)
       addNeighbours(i);
     }
   }
-  makeUnique();
+  SortUnique(disk, 0);
   const auto own = std::lower_bound(disk.begin(), disk.end(), centre);
   if (own != disk.end() && *own == centre)
   {

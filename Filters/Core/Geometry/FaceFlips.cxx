@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/FaceFlips.h"
 
+#include "Core/Foundation/IndexLists.h"
 #include "Core/Geometry/VertexNoise.h"
 
 #include <Eigen/Cholesky>
@@ -142,8 +143,7 @@ void TurnFlippedFaces(
         vertices.push_back(mesh.TriangleVertices()(t, a));
       }
     }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    SortUnique(vertices, 0);
     changed = false;
     for (const Index vertex : vertices)
     {

@@ -56,7 +56,7 @@ struct DenoisingReport
 /// Transactions on Image Processing 15(8), 2006). And they should be as white (see
 /// DisplacementStatistics): the steps of the second iterations end where the displacements around a
 /// vertex have nearly that of independent noise, so that regions of fine details keep them, and others
-/// become smooth.
+/// become smooth. They end as well where displacements have three times its variance.
 ///
 /// If the type is Automatic, the variation of normals is minimised, too, and its result is kept if
 /// the displacements are then as white as independent noise. Otherwise it has removed details, which
