@@ -539,8 +539,8 @@ TEST(SurfaceDenoising, FollowsRotationsTranslationsAndScalesOfTheSurface)
 TEST(SurfaceDenoising, DoesNotDependOnTheNumberOfThreads)
 {
   // so large that loops over vertices have several blocks
-  for (const Surface& noisy :
-    { NoisyAlongNormals(LBlock(32), 0.3), NoisyAlongNormals(RoughTorus(80), 0.2) })
+  for (const Surface& noisy : { NoisyAlongNormals(LBlock(32), 0.3),
+         NoisyAlongNormals(RoughTorus(80), 0.2), WithCorrelatedNoise(Icosphere(5), 0.3, 2.0) })
   {
     const Surface one = Denoised(noisy);
     const ThreadedFor threads(3);
@@ -834,12 +834,24 @@ TEST(SurfaceDenoising, LargerNoiseLevelsRemoveMoreAndTheTypeCanBeGiven)
 
 TEST(SurfaceDenoising, AbortEndsTheWork)
 {
-  const Surface noisy = NoisyAlongNormals(LBlock(6), 0.3);
-  const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
-  int reports = 0;
-  const ProgressMonitor::Callback stop = [&](double) { return ++reports < 5; };
-  EXPECT_THROW(DenoiseSurface(mesh, GatherVertices(mesh, noisy.Vertices), {}, DenoisingSettings(),
-                 nullptr, SerialFor(), ProgressMonitor(stop)),
-    Aborted);
-  EXPECT_EQ(reports, 5);
+  for (const Surface& noisy :
+    { NoisyAlongNormals(LBlock(6), 0.3), WithCorrelatedNoise(Icosphere(5), 0.3, 2.0) })
+  {
+    const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
+    const Points points = GatherVertices(mesh, noisy.Vertices);
+    const auto denoise = [&](const ProgressMonitor::Callback& report)
+    {
+      return DenoiseSurface(
+        mesh, points, {}, DenoisingSettings(), nullptr, SerialFor(), ProgressMonitor(report));
+    };
+    int all = 0;
+    const Points whole = denoise([&](double) { return ++all > 0; });
+    for (const int last : { 5, all / 3, 2 * all / 3, all })
+    {
+      int reports = 0;
+      EXPECT_THROW(denoise([&](double) { return ++reports < last; }), Aborted);
+      EXPECT_EQ(reports, last);
+    }
+    EXPECT_EQ(denoise([](double) { return true; }), whole);
+  }
 }
