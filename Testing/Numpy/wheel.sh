@@ -14,11 +14,9 @@ export PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INDEX=1
 export PIP_FIND_LINKS="$wheels"
 export CCACHE_BASEDIR="$folder/build" # see Testing/run-tests.sh
 export CC="${CC:-/usr/bin/cc}" CXX="${CXX:-/usr/bin/c++}" # the compilers of CMake, not those of Python
-if [ -n "${LD_PRELOAD:-}" ]; then # a sanitizer for the package, under which compilers would be slow
-  launcher=${CMAKE_CXX_COMPILER_LAUNCHER:-}
-  export CMAKE_CXX_COMPILER_LAUNCHER="env;-u;LD_PRELOAD${launcher:+;$launcher}"
-fi
-export CMAKE_ARGS="-DSURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON ${CMAKE_ARGS:-}"
+# Of a sanitizer, for Python alone: compilers would be slow with it, and shells do not start.
+preload=${PYTHON_PRELOAD:-}
+export CMAKE_ARGS="-DSURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON ${CMAKE_ARGS:-} ${preload:+-DSURFACEDIFFUSION_PYTHON_ENVIRONMENT=LD_PRELOAD=$preload}"
 
 rm -rf "$folder/environment" "$folder/dist" "$folder/source"
 mkdir -p "$folder/source"
@@ -47,7 +45,9 @@ if environment/bin/python -c "import vtkmodules" 2>/dev/null; then
   echo "there is a VTK in the environment"
   exit 1
 fi
-environment/bin/python -c "import surfacediffusion as s; print('installed', s.__version__)"
+LD_PRELOAD="$preload" environment/bin/python -c "
+import surfacediffusion as s
+print('installed', s.__version__)"
 environment/bin/pip install --quiet tqdm argcomplete mypy
 # For the tests of files and of PyVista, whose VTK is that of PyPI
 environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist
