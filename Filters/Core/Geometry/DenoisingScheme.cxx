@@ -45,6 +45,8 @@ constexpr double WhitenessOfNoSteps = 0.75;
 /// the noise: no steps from this mean square on, in squares of the noise. Impulsive noise, whose level
 /// is that of fewer vertices, and noise that is underestimated have up to 2.
 constexpr double LargestMeanSquare = 3.0;
+/// Shares of steps are found again after so many iterations.
+constexpr int IterationsOfShares = 2;
 /// The second stage ends when steps are this small on average.
 constexpr double SmallestStep = 0.01;
 
@@ -95,6 +97,10 @@ private:
     for (int i = 0; i < count; ++i)
     {
       const ProgressMonitor part = this->Begin(progress, i, count);
+      if (i == 0)
+      {
+        this->Geometry.MeasureWidths(this->Graph, this->Parallel);
+      }
       const Points guide = MakeGuide(this->Graph, this->Geometry, filter, this->Parallel);
       const Points normals =
         FilterNormals(this->Graph, this->Geometry, guide, filter, this->Parallel);
@@ -111,14 +117,21 @@ private:
   {
     const NormalFilterSettings& filter = this->Scheme.LinearFilter;
     const int count = this->Scheme.LinearIterations;
+    Vector shares;
     for (int i = 0; i < count; ++i)
     {
       const ProgressMonitor part = this->Begin(progress, i, count);
-      Vector shares;
+      if (i == 0)
+      {
+        this->Geometry.MeasureWidths(this->Graph, this->Parallel);
+      }
       Points before;
       if (this->Scheme.IsNoiseIndependent)
       {
-        shares = this->SharesOfSteps();
+        if (i % IterationsOfShares == 0)
+        {
+          shares = this->SharesOfSteps();
+        }
         if (shares.sum() <= SmallestStep * static_cast<double>(shares.size()))
         {
           progress.Report(1.0);
@@ -146,7 +159,7 @@ private:
     if (this->LastNormals.rows() > 0)
     {
       SurfaceDiffusion::TurnFlippedFaces(
-        this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved);
+        this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved, this->Parallel);
     }
   }
 

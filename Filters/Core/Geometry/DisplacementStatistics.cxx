@@ -83,10 +83,8 @@ Vector DisplacementStatistics::LocalWhiteness(const Vector& displacements) const
   Squares squares = this->FindSquares(displacements);
   this->Average(squares, WhitenessSweeps);
   Vector whiteness(squares.rows());
-  for (Index i = 0; i < static_cast<Index>(squares.rows()); ++i)
-  {
-    whiteness[i] = squares(i, 1) > 0.0 ? squares(i, 0) / squares(i, 1) : 0.0;
-  }
+  ForEach(this->Parallel, static_cast<Index>(squares.rows()),
+    [&](Index i) { whiteness[i] = squares(i, 1) > 0.0 ? squares(i, 0) / squares(i, 1) : 0.0; });
   return whiteness;
 }
 

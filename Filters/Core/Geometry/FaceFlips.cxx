@@ -117,6 +117,30 @@ bool IsFlipped(const TriangleMesh& mesh, const Points& normals, const Points& po
   return Seen(mesh, normals, points, 3 * t, points.row(mesh.TriangleVertices()(t, 0))) < 0.0;
 }
 
+std::vector<Index> VerticesOfFlippedFaces(const TriangleMesh& mesh, const Points& normals,
+  const Points& points, const ParallelFor& parallel)
+{
+  std::vector<std::vector<Index>> blocks(NumberOfBlocks(mesh.NumberOfTriangles()));
+  ForEachBlock(parallel, mesh.NumberOfTriangles(),
+    [&](Index block, Index begin, Index end)
+    {
+      for (Index t = begin; t < end; ++t)
+      {
+        for (int a = 0; a < 3 && IsFlipped(mesh, normals, points, t); ++a)
+        {
+          blocks[block].push_back(mesh.TriangleVertices()(t, a));
+        }
+      }
+    });
+  std::vector<Index> vertices;
+  for (const std::vector<Index>& block : blocks)
+  {
+    vertices.insert(vertices.end(), block.begin(), block.end());
+  }
+  SortUnique(vertices, 0);
+  return vertices;
+}
+
 } // namespace
 
 Index CountFlippedFaces(const TriangleMesh& mesh, const Points& normals, const Points& points)
@@ -129,21 +153,13 @@ Index CountFlippedFaces(const TriangleMesh& mesh, const Points& normals, const P
   return count;
 }
 
-void TurnFlippedFaces(
-  const TriangleMesh& mesh, const Points& normals, const std::vector<char>& fixed, Points& points)
+void TurnFlippedFaces(const TriangleMesh& mesh, const Points& normals,
+  const std::vector<char>& fixed, Points& points, const ParallelFor& parallel)
 {
   bool changed = true;
   for (int sweep = 0; sweep < MaximumNumberOfSweeps && changed; ++sweep)
   {
-    std::vector<Index> vertices;
-    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-    {
-      for (int a = 0; a < 3 && IsFlipped(mesh, normals, points, t); ++a)
-      {
-        vertices.push_back(mesh.TriangleVertices()(t, a));
-      }
-    }
-    SortUnique(vertices, 0);
+    const std::vector<Index> vertices = VerticesOfFlippedFaces(mesh, normals, points, parallel);
     changed = false;
     for (const Index vertex : vertices)
     {

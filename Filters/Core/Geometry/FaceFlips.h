@@ -24,7 +24,7 @@ Index CountFlippedFaces(const TriangleMesh& mesh, const Points& normals, const P
 /// flipped triangles never grows. The order is that of the vertices.
 ///
 /// fixed: per vertex, nonzero for vertices that stay; may be empty.
-void TurnFlippedFaces(
-  const TriangleMesh& mesh, const Points& normals, const std::vector<char>& fixed, Points& points);
+void TurnFlippedFaces(const TriangleMesh& mesh, const Points& normals,
+  const std::vector<char>& fixed, Points& points, const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

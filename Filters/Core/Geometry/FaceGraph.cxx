@@ -12,6 +12,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
+/// The mean distance to the triangles that share a vertex over that to the neighbours across edges.
+constexpr double RingDistance = 1.5;
+
 int NumberOfSharedVertices(const Triangles& triangles, Index t, Index u)
 {
   int shared = 0;
@@ -88,6 +91,23 @@ void FaceGeometry::Measure(
       this->Normals.row(t) = length > 0.0 ? Eigen::RowVector3d(cross / length)
                                           : Eigen::RowVector3d(Eigen::RowVector3d::Zero());
       this->Centroids.row(t) = (a + b + c) / 3.0;
+    });
+}
+
+void FaceGeometry::MeasureWidths(const FaceGraph& graph, const ParallelFor& parallel)
+{
+  this->Widths.resize(graph.NumberOfFaces());
+  ForEach(parallel, graph.NumberOfFaces(),
+    [&](Index f)
+    {
+      double sum = 0.0;
+      const Offset begin = graph.Ring.Begin[f];
+      const Offset end = graph.Ring.Begin[f + 1];
+      for (Offset k = begin; k < end; ++k)
+      {
+        sum += (this->Centroids.row(graph.Ring.Entries[k]) - this->Centroids.row(f)).norm();
+      }
+      this->Widths[f] = end > begin ? sum / (RingDistance * static_cast<double>(end - begin)) : 0.0;
     });
 }
 

@@ -31,9 +31,14 @@ struct FaceGeometry
   SurfaceDiffusion::Points Normals;
   Vector Areas;
   SurfaceDiffusion::Points Centroids;
+  /// The mean distance of the centroid from those of the neighbours across edges, by that from those
+  /// of the triangles that share a vertex; 0 without such. Filters of normals have this width.
+  Vector Widths;
 
-  /// points: per vertex of the mesh.
+  /// points: per vertex of the mesh. The widths stay.
   void Measure(const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel);
+  /// At the points of the last Measure().
+  void MeasureWidths(const FaceGraph& graph, const ParallelFor& parallel);
 };
 
 /// exp(-x) for x >= 0 within 0.04, and 0 from x = 8 on: a weight that needs no library function, so

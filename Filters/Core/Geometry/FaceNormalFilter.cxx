@@ -10,33 +10,11 @@ namespace
 
 /// The width of the guide, relative to that of the filter.
 constexpr double GuideWidth = 0.5;
-/// The mean distance to the triangles of a ring over that to the neighbours across edges.
-constexpr double RingDistance = 1.5;
 
 Eigen::RowVector3d Direction(const Eigen::RowVector3d& vector, const Eigen::RowVector3d& otherwise)
 {
   const double length = vector.norm();
   return length > 0.0 ? Eigen::RowVector3d(vector / length) : otherwise;
-}
-
-/// Per triangle, the standard deviation of the spatial weight for Width = 1.
-Vector MeasureWidths(
-  const FaceGraph& graph, const FaceGeometry& geometry, const ParallelFor& parallel)
-{
-  Vector widths(graph.NumberOfFaces());
-  ForEach(parallel, graph.NumberOfFaces(),
-    [&](Index f)
-    {
-      double sum = 0.0;
-      const Offset begin = graph.Ring.Begin[f];
-      const Offset end = graph.Ring.Begin[f + 1];
-      for (Offset k = begin; k < end; ++k)
-      {
-        sum += (geometry.Centroids.row(graph.Ring.Entries[k]) - geometry.Centroids.row(f)).norm();
-      }
-      widths[f] = end > begin ? sum / (RingDistance * static_cast<double>(end - begin)) : 0.0;
-    });
-  return widths;
 }
 
 } // namespace
@@ -45,11 +23,10 @@ Points MakeGuide(const FaceGraph& graph, const FaceGeometry& geometry,
   const NormalFilterSettings& settings, const ParallelFor& parallel)
 {
   Points guide(graph.NumberOfFaces(), 3);
-  const Vector widths = MeasureWidths(graph, geometry, parallel);
   ForEach(parallel, graph.NumberOfFaces(),
     [&](Index f)
     {
-      const double width = GuideWidth * settings.Width * widths[f];
+      const double width = GuideWidth * settings.Width * geometry.Widths[f];
       Eigen::RowVector3d sum = geometry.Areas[f] * geometry.Normals.row(f);
       for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
       {
@@ -64,42 +41,53 @@ Points MakeGuide(const FaceGraph& graph, const FaceGeometry& geometry,
   return guide;
 }
 
-Vector NeighbourWeights(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
-  const NormalFilterSettings& settings, const ParallelFor& parallel)
+NeighbourWeights::NeighbourWeights(const FaceGraph& graph, const FaceGeometry& geometry,
+  const Points& guide, const NormalFilterSettings& settings)
+  : Graph(graph)
+  , Geometry(geometry)
+  , Guide(guide)
+  , Distance(0.5 / (settings.Width * settings.Width))
+  , Range(0.5 / (settings.Range * settings.Range))
 {
-  Vector weights(static_cast<Offset>(graph.Ring.Entries.size()));
-  const Vector widths = settings.Width * MeasureWidths(graph, geometry, parallel);
-  const double range = 0.5 / (settings.Range * settings.Range);
-  ForEach(parallel, graph.NumberOfFaces(),
-    [&](Index f)
-    {
-      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
-      {
-        const Index g = graph.Ring.Entries[k];
-        const double distance =
-          (geometry.Centroids.row(g) - geometry.Centroids.row(f)).squaredNorm();
-        const double difference = (guide.row(g) - guide.row(f)).squaredNorm();
-        weights[k] = FallOff(0.5 * distance / (widths[f] * widths[g]) + range * difference);
-      }
-    });
-  return weights;
+}
+
+void NeighbourWeights::Find(Index f, std::vector<double>& weights) const
+{
+  const Index* const ring = this->Graph.Ring.Entries.data() + this->Graph.Ring.Begin[f];
+  weights.resize(
+    static_cast<std::size_t>(this->Graph.Ring.Begin[f + 1] - this->Graph.Ring.Begin[f]));
+  for (std::size_t k = 0; k < weights.size(); ++k)
+  {
+    const Index g = ring[k];
+    const double distance =
+      (this->Geometry.Centroids.row(g) - this->Geometry.Centroids.row(f)).squaredNorm();
+    const double widths = this->Geometry.Widths[f] * this->Geometry.Widths[g];
+    const double difference = (this->Guide.row(g) - this->Guide.row(f)).squaredNorm();
+    weights[k] = FallOff(this->Distance * distance / widths + this->Range * difference);
+  }
 }
 
 Points FilterNormals(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
   const NormalFilterSettings& settings, const ParallelFor& parallel)
 {
-  const Vector weights = NeighbourWeights(graph, geometry, guide, settings, parallel);
+  const NeighbourWeights neighbours(graph, geometry, guide, settings);
   Points normals(graph.NumberOfFaces(), 3);
-  ForEach(parallel, graph.NumberOfFaces(),
-    [&](Index f)
+  ForEachBlock(parallel, graph.NumberOfFaces(),
+    [&](Index, Index begin, Index end)
     {
-      Eigen::RowVector3d sum = geometry.Areas[f] * geometry.Normals.row(f);
-      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
+      std::vector<double> weights;
+      for (Index f = begin; f < end; ++f)
       {
-        const Index g = graph.Ring.Entries[k];
-        sum += weights[k] * geometry.Areas[g] * geometry.Normals.row(g);
+        neighbours.Find(f, weights);
+        Eigen::RowVector3d sum = geometry.Areas[f] * geometry.Normals.row(f);
+        const Index* g = graph.Ring.Entries.data() + graph.Ring.Begin[f];
+        for (const double weight : weights)
+        {
+          sum += weight * geometry.Areas[*g] * geometry.Normals.row(*g);
+          ++g;
+        }
+        normals.row(f) = Direction(sum, geometry.Normals.row(f));
       }
-      normals.row(f) = Direction(sum, geometry.Normals.row(f));
     });
   return normals;
 }

@@ -19,9 +19,23 @@ struct NormalFilterSettings
 Points MakeGuide(const FaceGraph& graph, const FaceGeometry& geometry,
   const NormalFilterSettings& settings, const ParallelFor& parallel);
 
-/// The weights w_fg of FilterNormals(), in the order of graph.Ring.Entries.
-Vector NeighbourWeights(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
-  const NormalFilterSettings& settings, const ParallelFor& parallel);
+/// The weights w_fg of FilterNormals().
+class NeighbourWeights
+{
+public:
+  NeighbourWeights(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
+    const NormalFilterSettings& settings);
+
+  /// Those of triangle f, in the order of its list in graph.Ring.
+  void Find(Index f, std::vector<double>& weights) const;
+
+private:
+  const FaceGraph& Graph;
+  const FaceGeometry& Geometry;
+  const Points& Guide;
+  const double Distance; ///< 1 / (2 Width^2)
+  const double Range; ///< 1 / (2 Range^2)
+};
 
 /// Filters the normals n_f of the triangles: the joint bilateral filter over the triangles that
 /// share a vertex (W. Zhang, B. Deng, J. Zhang, S. Bouaziz, L. Liu, Guided Mesh Normal Filtering,

@@ -125,35 +125,41 @@ Points ReplaceUnsupportedNormals(const FaceGraph& graph, const FaceGeometry& geo
 Points FitLinearNormals(const FaceGraph& graph, const FaceGeometry& geometry, const Points& guide,
   const NormalFilterSettings& settings, const ParallelFor& parallel)
 {
-  const Vector weights = NeighbourWeights(graph, geometry, guide, settings, parallel);
+  const NeighbourWeights neighbours(graph, geometry, guide, settings);
   const double range = RangeFactor(settings);
   Points normals(graph.NumberOfFaces(), 3);
-  ForEach(parallel, graph.NumberOfFaces(),
-    [&](Index f)
+  ForEachBlock(parallel, graph.NumberOfFaces(),
+    [&](Index, Index begin, Index end)
     {
-      const Eigen::RowVector3d own = guide.row(f);
-      if (own.isZero(0.0))
+      std::vector<double> weights;
+      for (Index f = begin; f < end; ++f)
       {
-        normals.row(f) = own;
-        return;
-      }
-      LinearFit fit(own);
-      const auto add = [&](Index g, double weight)
-      {
-        fit.Add(geometry.Centroids.row(g) - geometry.Centroids.row(f), geometry.Normals.row(g),
-          weight * geometry.Areas[g]);
-      };
-      add(f, FallOff(range * (geometry.Normals.row(f) - own).squaredNorm()));
-      for (Offset k = graph.Ring.Begin[f]; k < graph.Ring.Begin[f + 1]; ++k)
-      {
-        if (weights[k] > 0.0)
+        const Eigen::RowVector3d own = guide.row(f);
+        if (own.isZero(0.0))
         {
-          add(graph.Ring.Entries[k], weights[k]);
+          normals.row(f) = own;
+          continue;
         }
+        neighbours.Find(f, weights);
+        LinearFit fit(own);
+        const auto add = [&](Index g, double weight)
+        {
+          fit.Add(geometry.Centroids.row(g) - geometry.Centroids.row(f), geometry.Normals.row(g),
+            weight * geometry.Areas[g]);
+        };
+        add(f, FallOff(range * (geometry.Normals.row(f) - own).squaredNorm()));
+        const Index* const ring = graph.Ring.Entries.data() + graph.Ring.Begin[f];
+        for (std::size_t k = 0; k < weights.size(); ++k)
+        {
+          if (weights[k] > 0.0)
+          {
+            add(ring[k], weights[k]);
+          }
+        }
+        const Eigen::RowVector3d normal = fit.Solve();
+        const double length = normal.norm();
+        normals.row(f) = length > 0.0 ? Eigen::RowVector3d(normal / length) : own;
       }
-      const Eigen::RowVector3d normal = fit.Solve();
-      const double length = normal.norm();
-      normals.row(f) = length > 0.0 ? Eigen::RowVector3d(normal / length) : own;
     });
   return normals;
 }

@@ -116,7 +116,8 @@ void FitToNormals(const TriangleMesh& mesh, const Points& given, const Points& n
   const FitSystem system(mesh, given, normals, fixed, settings, points, parallel);
   // In displacements from the given points, which may be far from the origin.
   Points x = points - given;
-  Points residual(count, 3), direction(count, 3), product(count, 3), preconditioned(count, 3);
+  Points residual(count, 3), direction(count, 3), product(count, 3);
+  Points preconditioned(settings.MaximumNumberOfIterations > 1 ? count : 0, 3);
   double rz = Sum(parallel, count,
     [&](Index i)
     {
@@ -144,10 +145,14 @@ void FitToNormals(const TriangleMesh& mesh, const Points& given, const Points& n
       break;
     }
     const double length = rz / curvature;
+    ForEach(parallel, count, [&](Index i) { x.row(i) += length * direction.row(i); });
+    if (step + 1 == settings.MaximumNumberOfIterations)
+    {
+      break;
+    }
     const double next = Sum(parallel, count,
       [&](Index i)
       {
-        x.row(i) += length * direction.row(i);
         residual.row(i) -= length * product.row(i);
         preconditioned.row(i) = system.Precondition(residual.row(i), i);
         return residual.row(i).dot(preconditioned.row(i));

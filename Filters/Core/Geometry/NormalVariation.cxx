@@ -18,14 +18,13 @@ namespace
 {
 
 /// r of the energy, which keeps slopes of triangles without neighbours at 0.
-constexpr double Ridge = 1e-6;
+constexpr float Ridge = 1e-6F;
 constexpr double SmallestArea = 1e-4; ///< over the mean
 
 using Block = VariationBlock;
+using Blocks = std::vector<VariationBlock>;
 using Edge = VariationEdge;
-/// A symmetric matrix: xx, xy, xz, yy, yz, zz. As the directions of descent, in single precision: the
-/// length of a step is found for the direction that is stored.
-using Inverse = std::array<float, 6>;
+using Inverse = std::array<float, 6>; ///< a symmetric matrix: xx, xy, xz, yy, yz, zz
 
 /// What all triangles read.
 struct Lists
@@ -33,26 +32,37 @@ struct Lists
   const Edge* Edges;
   const VariationEdges::OfFace* EdgesOf;
   const Inverse* Inverses;
-  const double* Areas;
+  const float* Areas;
 };
 
-/// b, the multipliers, become those of v = D x + b.
-SURFACEDIFFUSION_ANY_VECTORS void UpdateMultipliers(const Edge* edges, const double* state,
-  const NormalVariationSettings& settings, double* multipliers, Index begin, Index end)
+/// D x at edge e.
+inline Block DifferencesAt(const Edge& edge, const Block* x)
 {
+  Block v;
+  AddDifferences(edge, 0, x[edge.Faces[0]], v);
+  AddDifferences(edge, 1, x[edge.Faces[1]], v);
+  return v;
+}
+
+/// b, the multipliers, become those of v = D x + b.
+SURFACEDIFFUSION_ANY_VECTORS void UpdateMultipliers(const Edge* edges, const Block* state,
+  const NormalVariationSettings& settings, Block* multipliers, Index begin, Index end)
+{
+  const float first = static_cast<float>(settings.First);
+  const float second = static_cast<float>(settings.Second);
   for (Index e = begin; e < end; ++e)
   {
     const Edge& edge = edges[e];
-    Block v = LoadBlock(multipliers, e);
-    AddDifferences(edge, 0, LoadBlock(state, edge.Faces[0]), v);
-    AddDifferences(edge, 1, LoadBlock(state, edge.Faces[1]), v);
-    Shrink(edge, settings.First, settings.Second, v);
-    StoreBlock(multipliers, e, v);
+    Block v = multipliers[e];
+    AddDifferences(edge, 0, state[edge.Faces[0]], v);
+    AddDifferences(edge, 1, state[edge.Faces[1]], v);
+    Shrink(edge, first, second, v);
+    multipliers[e] = v;
   }
 }
 
 /// Row f of D^T L b.
-inline Block ForceOn(const Lists& lists, const double* multipliers, Index f)
+inline Block ForceOn(const Lists& lists, const Block* multipliers, Index f)
 {
   Block force;
   for (const Index e : lists.EdgesOf[f])
@@ -60,80 +70,61 @@ inline Block ForceOn(const Lists& lists, const double* multipliers, Index f)
     if (e >= 0)
     {
       const Edge& edge = lists.Edges[e];
-      AddForces(edge, edge.Faces[0] == f ? 0 : 1, LoadBlock(multipliers, e), force);
+      AddForces(edge, edge.Faces[0] == f ? 0 : 1, multipliers[e], force);
     }
   }
   return force;
 }
 
 SURFACEDIFFUSION_ANY_VECTORS void FindForces(
-  const Lists& lists, const double* multipliers, double* forces, Index begin, Index end)
+  const Lists& lists, const Block* multipliers, Block* forces, Index begin, Index end)
 {
   for (Index f = begin; f < end; ++f)
   {
-    StoreBlock(forces, f, ForceOn(lists, multipliers, f));
+    forces[f] = ForceOn(lists, multipliers, f);
   }
 }
 
 /// Directions of descent from the residuals M (d - x) + D^T L (b' - 2 b), b' the multipliers before
 /// the last ones, b. forces: those of b', and after the call of b. Returns the product of the
 /// directions with the residuals, and adds the part of the areas to the curvature.
-SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const double* given,
-  const double* state, const double* multipliers, double* forces, float* direction,
-  double& curvature, Index begin, Index end)
+SURFACEDIFFUSION_ANY_VECTORS double FindDirections(const Lists& lists, const VariationRow* given,
+  const Block* state, const Block* multipliers, Block* forces, Block* direction, double& curvature,
+  Index begin, Index end)
 {
   double sum = 0.0;
   for (Index f = begin; f < end; ++f)
   {
     const Block force = ForceOn(lists, multipliers, f);
-    const Block last = LoadBlock(forces, f);
-    const Block x = LoadBlock(state, f);
-    const double area = lists.Areas[f];
-    double d[4] = {};
-    std::copy_n(given + 3 * static_cast<std::ptrdiff_t>(f), 3, d);
+    const Block& x = state[f];
+    const float area = lists.Areas[f];
     Block r;
-    for (int c = 0; c < 4; ++c)
-    {
-      r.Rows[0][c] = area * (d[c] - x.Rows[0][c]);
-      r.Rows[1][c] = -Ridge * x.Rows[1][c];
-      r.Rows[2][c] = -Ridge * x.Rows[2][c];
-    }
-    for (int k = 0; k < 3; ++k)
-    {
-      for (int c = 0; c < 4; ++c)
-      {
-        r.Rows[k][c] += last.Rows[k][c] - 2.0 * force.Rows[k][c];
-      }
-    }
-    StoreBlock(forces, f, force);
+    r.Rows[0] = area * (given[f] - x.Rows[0]) + (forces[f].Rows[0] - 2.0F * force.Rows[0]);
+    r.Rows[1] = -Ridge * x.Rows[1] + (forces[f].Rows[1] - 2.0F * force.Rows[1]);
+    r.Rows[2] = -Ridge * x.Rows[2] + (forces[f].Rows[2] - 2.0F * force.Rows[2]);
+    forces[f] = force;
     const Inverse& m = lists.Inverses[f];
     Block p;
-    for (int c = 0; c < 4; ++c)
-    {
-      p.Rows[0][c] = m[0] * r.Rows[0][c] + m[1] * r.Rows[1][c] + m[2] * r.Rows[2][c];
-      p.Rows[1][c] = m[1] * r.Rows[0][c] + m[3] * r.Rows[1][c] + m[4] * r.Rows[2][c];
-      p.Rows[2][c] = m[2] * r.Rows[0][c] + m[4] * r.Rows[1][c] + m[5] * r.Rows[2][c];
-    }
-    StoreBlock(direction, f, p);
-    p = LoadBlock(direction, f);
+    p.Rows[0] = m[0] * r.Rows[0] + m[1] * r.Rows[1] + m[2] * r.Rows[2];
+    p.Rows[1] = m[1] * r.Rows[0] + m[3] * r.Rows[1] + m[4] * r.Rows[2];
+    p.Rows[2] = m[2] * r.Rows[0] + m[4] * r.Rows[1] + m[5] * r.Rows[2];
+    direction[f] = p;
     sum += Product(p, r);
-    curvature += area * SquareOf(p.Rows[0]) + Ridge * (SquareOf(p.Rows[1]) + SquareOf(p.Rows[2]));
+    curvature +=
+      (area * p.Rows[0].square() + Ridge * (p.Rows[1].square() + p.Rows[2].square())).sum();
   }
   return sum;
 }
 
 /// The part of the edges in the curvature.
 SURFACEDIFFUSION_ANY_VECTORS double SumSquaresOfDifferences(
-  const Edge* edges, const float* direction, Index begin, Index end)
+  const Edge* edges, const Block* direction, Index begin, Index end)
 {
   double sum = 0.0;
   for (Index e = begin; e < end; ++e)
   {
-    const Edge& edge = edges[e];
-    Block v;
-    AddDifferences(edge, 0, LoadBlock(direction, edge.Faces[0]), v);
-    AddDifferences(edge, 1, LoadBlock(direction, edge.Faces[1]), v);
-    sum += edge.Length * Product(v, v);
+    const Block v = DifferencesAt(edges[e], direction);
+    sum += edges[e].Length * Product(v, v);
   }
   return sum;
 }
@@ -169,7 +160,7 @@ public:
   void SetPlaces(const Points& points, const FaceGeometry& geometry)
   {
     const double mean = geometry.Areas.sum() / std::max<Index>(1, this->Graph.NumberOfFaces());
-    this->Areas = (geometry.Areas / mean).cwiseMax(SmallestArea);
+    this->Areas = (geometry.Areas / mean).cwiseMax(SmallestArea).cast<float>();
     this->Edges.SetPlaces(points, geometry, this->Parallel);
     ForEach(this->Parallel, this->Graph.NumberOfFaces(), [&](Index f) { this->SetInverse(f); });
   }
@@ -184,34 +175,22 @@ public:
   {
     const Index count = this->Graph.NumberOfFaces();
     this->Settings = settings;
-    if (this->State.empty())
-    {
-      this->Start(given);
-    }
+    this->SetGiven(given);
     const Lists lists = this->GetLists();
     ForEach(this->Parallel, this->Edges.Size(),
-      [&](Index e)
-      {
-        Block b = LoadBlock(this->Multipliers.data(), e);
-        Shrink(this->Edges[e], settings.First, settings.Second, b);
-        StoreBlock(this->Multipliers.data(), e, b);
-      });
+      [&](Index e) { this->ShrinkAt(e, this->Multipliers[e]); });
     ForEachBlock(this->Parallel, count,
       [&](Index, Index begin, Index end)
       { FindForces(lists, this->Multipliers.data(), this->Forces.data(), begin, end); });
     for (int iteration = 0; iteration < settings.Iterations; ++iteration)
     {
       progress.Report(static_cast<double>(iteration) / settings.Iterations);
-      this->Iterate(lists, given);
+      this->Iterate(lists);
     }
     Points normals(count, 3);
-    for (Index f = 0; f < count; ++f)
-    {
-      for (int c = 0; c < 3; ++c)
-      {
-        normals(f, c) = this->State[PlaceOf(f) + c];
-      }
-    }
+    ForEach(this->Parallel, count,
+      [&](Index f)
+      { normals.row(f) = this->State[f].Rows[0].head<3>().transpose().cast<double>(); });
     return normals;
   }
 
@@ -219,60 +198,70 @@ public:
   {
     const NormalVariationSettings& settings = this->Settings;
     double energy = 0.0;
-    std::vector<double> multipliers = this->Multipliers;
+    Blocks multipliers = this->Multipliers;
     for (Index e = 0; e < this->Edges.Size(); ++e)
     {
       const Edge& edge = this->Edges[e];
-      Block v;
-      AddDifferences(edge, 0, LoadBlock(this->State.data(), edge.Faces[0]), v);
-      AddDifferences(edge, 1, LoadBlock(this->State.data(), edge.Faces[1]), v);
+      const Block v = DifferencesAt(edge, this->State.data());
       energy += edge.Length * edge.Weight *
         (settings.First * std::sqrt(SquareOf(v.Rows[0])) +
           settings.Second * std::sqrt(SquareOf(v.Rows[1]) + SquareOf(v.Rows[2])));
-      Block b = LoadBlock(multipliers.data(), e);
-      Shrink(edge, settings.First, settings.Second, b);
-      StoreBlock(multipliers.data(), e, b);
+      this->ShrinkAt(e, multipliers[e]);
     }
     double dual = 0.0;
     const Lists lists = this->GetLists();
     for (Index f = 0; f < this->Graph.NumberOfFaces(); ++f)
     {
       const Block force = ForceOn(lists, multipliers.data(), f);
-      const Block state = LoadBlock(this->State.data(), f);
+      const Block& x = this->State[f];
       const double area = this->Areas[f];
-      for (int c = 0; c < 3; ++c)
-      {
-        const double d = given(f, c);
-        const auto square = [](double x) { return x * x; };
-        const auto& x = state.Rows;
-        energy +=
-          0.5 * area * square(x[0][c] - d) + 0.5 * Ridge * (square(x[1][c]) + square(x[2][c]));
-        dual += force.Rows[0][c] * (d - 0.5 * force.Rows[0][c] / area) -
-          0.5 * (square(force.Rows[1][c]) + square(force.Rows[2][c])) / Ridge;
-      }
+      const VariationRow d = RowOf(given, f);
+      energy += 0.5 * area * SquareOf(x.Rows[0] - d) +
+        0.5 * Ridge * (SquareOf(x.Rows[1]) + SquareOf(x.Rows[2]));
+      dual += (force.Rows[0] * d).sum() - 0.5 * SquareOf(force.Rows[0]) / area -
+        0.5 * (SquareOf(force.Rows[1]) + SquareOf(force.Rows[2])) / Ridge;
     }
     return { energy, energy - dual };
   }
 
 private:
-  /// Of block i in a list.
-  static std::size_t PlaceOf(Index i) { return 9 * static_cast<std::size_t>(i); }
-
-  /// The given normals without slopes.
-  void Start(const Points& given)
+  static VariationRow RowOf(const Points& given, Index f)
   {
-    const Index count = this->Graph.NumberOfFaces();
-    this->State.assign(PlaceOf(count), 0.0);
-    this->Forces.assign(PlaceOf(count), 0.0);
-    this->Direction.assign(PlaceOf(count), 0.0F);
-    this->Multipliers.assign(PlaceOf(this->Edges.Size()), 0.0);
-    for (Index f = 0; f < count; ++f)
+    VariationRow row = VariationRow::Zero();
+    row.head<3>() = given.row(f).transpose().array().cast<float>();
+    return row;
+  }
+
+  static double SquareOf(const VariationRow& row) { return row.square().sum(); }
+
+  void ShrinkAt(Index e, Block& multipliers) const
+  {
+    Shrink(this->Edges[e], static_cast<float>(this->Settings.First),
+      static_cast<float>(this->Settings.Second), multipliers);
+  }
+
+  /// The first time they are the state, without slopes.
+  void SetGiven(const Points& given)
+  {
+    const auto count = static_cast<std::size_t>(this->Graph.NumberOfFaces());
+    const bool isFirst = this->State.empty();
+    if (isFirst)
     {
-      for (int c = 0; c < 3; ++c)
-      {
-        this->State[PlaceOf(f) + c] = given(f, c);
-      }
+      this->State.resize(count);
+      this->Forces.resize(count);
+      this->Direction.resize(count);
+      this->Given.resize(count);
+      this->Multipliers.resize(static_cast<std::size_t>(this->Edges.Size()));
     }
+    ForEach(this->Parallel, this->Graph.NumberOfFaces(),
+      [&](Index f)
+      {
+        this->Given[f] = RowOf(given, f);
+        if (isFirst)
+        {
+          this->State[f].Rows[0] = this->Given[f];
+        }
+      });
   }
 
   Lists GetLists() const
@@ -294,7 +283,7 @@ private:
         Block unit, differences, column;
         for (int k = 0; k < 3; ++k)
         {
-          unit.Rows[k][k] = 1.0;
+          unit.Rows[k][k] = 1.0F;
         }
         AddDifferences(edge, side, unit, differences);
         AddForces(edge, side, differences, column);
@@ -313,7 +302,7 @@ private:
 
   /// The multipliers of v = D x + b, and one step of descent of
   /// 1/2 x (M + D^T L D) x - (M d + D^T L (v - 2 b)) x.
-  void Iterate(const Lists& lists, const Points& given)
+  void Iterate(const Lists& lists)
   {
     const Index count = this->Graph.NumberOfFaces();
     ForEachBlock(this->Parallel, this->Edges.Size(),
@@ -326,8 +315,9 @@ private:
     const double descent = SumOfBlocks(this->Parallel, count,
       [&](Index block, Index begin, Index end)
       {
-        return FindDirections(lists, given.data(), this->State.data(), this->Multipliers.data(),
-          this->Forces.data(), this->Direction.data(), curvatures[block], begin, end);
+        return FindDirections(lists, this->Given.data(), this->State.data(),
+          this->Multipliers.data(), this->Forces.data(), this->Direction.data(), curvatures[block],
+          begin, end);
       });
     double curvature = SumOfBlocks(this->Parallel, this->Edges.Size(),
       [&](Index, Index begin, Index end)
@@ -340,13 +330,13 @@ private:
     {
       return;
     }
-    const double length = descent / curvature;
-    ForEachBlock(this->Parallel, count,
-      [&](Index, Index begin, Index end)
+    const auto length = static_cast<float>(descent / curvature);
+    ForEach(this->Parallel, count,
+      [&](Index f)
       {
-        for (std::size_t k = PlaceOf(begin); k < PlaceOf(end); ++k)
+        for (int k = 0; k < 3; ++k)
         {
-          this->State[k] += length * static_cast<double>(this->Direction[k]);
+          this->State[f].Rows[k] += length * this->Direction[f].Rows[k];
         }
       });
   }
@@ -356,12 +346,12 @@ private:
   NormalVariationSettings Settings;
   VariationEdges Edges;
   std::vector<Inverse> Inverses;
-  Vector Areas; ///< over their mean
-  // Lists of blocks, see LoadBlock().
-  std::vector<double> State; ///< (n, u); no entries before the first Minimize()
-  std::vector<double> Forces; ///< D^T L b
-  std::vector<float> Direction;
-  std::vector<double> Multipliers; ///< per edge: b
+  Eigen::VectorXf Areas; ///< over their mean
+  Blocks State; ///< (n, u); no entries before the first Minimize()
+  Blocks Forces; ///< D^T L b
+  Blocks Direction;
+  std::vector<VariationRow> Given;
+  Blocks Multipliers; ///< per edge: b
 };
 
 NormalVariation::NormalVariation(const FaceGraph& graph, double unit, const ParallelFor& parallel)

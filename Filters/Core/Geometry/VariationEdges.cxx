@@ -118,7 +118,7 @@ void VariationEdges::SetPlaces(
       const int a = CornerOpposite(mesh.TriangleVertices(), f, edge.Faces[1]);
       const Eigen::RowVector3d first = points.row(mesh.TriangleVertices()(f, (a + 1) % 3));
       const Eigen::RowVector3d last = points.row(mesh.TriangleVertices()(f, (a + 2) % 3));
-      edge.Length = (last - first).norm() / this->Unit;
+      edge.Length = static_cast<float>((last - first).norm() / this->Unit);
       for (int side = 0; side < 2; ++side)
       {
         const Index t = edge.Faces[side];
@@ -127,8 +127,8 @@ void VariationEdges::SetPlaces(
           axes(0.5 * (first + last) - geometry.Centroids.row(t)) / this->Unit;
         const Eigen::Vector2d along = axes(last - first).normalized();
         const double out = along[0] * middle[1] - along[1] * middle[0];
-        Eigen::Map<Eigen::Vector2d>(edge.Middle[side]) = middle;
-        Eigen::Map<Eigen::Vector2d>(edge.Along[side]) = along;
+        Eigen::Map<Eigen::Vector2f>(edge.Middle[side]) = middle.cast<float>();
+        Eigen::Map<Eigen::Vector2f>(edge.Along[side]) = along.cast<float>();
         edge.Side[side] = out > 0.0 ? 1.0F : -1.0F;
       }
     });
@@ -141,7 +141,7 @@ void VariationEdges::SetWeights(const Points& normals, double range, const Paral
     {
       VariationEdge& edge = this->Edges[e];
       const double square = (normals.row(edge.Faces[0]) - normals.row(edge.Faces[1])).squaredNorm();
-      edge.Weight = 1.0 / (1.0 + square / (range * range));
+      edge.Weight = static_cast<float>(1.0 / (1.0 + square / (range * range)));
     });
 }
 

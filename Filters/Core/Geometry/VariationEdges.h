@@ -4,56 +4,34 @@
 
 #include "Core/Geometry/FaceGraph.h"
 
+#include <Eigen/Core>
+
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
 
+/// A row of three numbers and a 0: four of them in single precision are a vector of every processor.
+using VariationRow = Eigen::Array4f;
+
 /// The normal and the slope of a triangle, or their differences at an edge: of the normal, and of
-/// the slope along the edge and across it. The last column is 0: rows of four are vectors of the
-/// processor.
+/// the slope along the edge and across it.
 struct VariationBlock
 {
-  double Rows[3][4] = {};
+  VariationRow Rows[3] = { VariationRow::Zero(), VariationRow::Zero(), VariationRow::Zero() };
 };
-
-/// Block i of a list without the zeros, nine numbers each.
-template <typename Number>
-VariationBlock LoadBlock(const Number* list, Index i)
-{
-  const Number* const p = list + 9 * static_cast<std::ptrdiff_t>(i);
-  VariationBlock block;
-  for (int c = 0; c < 3; ++c)
-  {
-    block.Rows[0][c] = p[c];
-    block.Rows[1][c] = p[3 + c];
-    block.Rows[2][c] = p[6 + c];
-  }
-  return block;
-}
-
-template <typename Number>
-void StoreBlock(Number* list, Index i, const VariationBlock& block)
-{
-  Number* const p = list + 9 * static_cast<std::ptrdiff_t>(i);
-  for (int c = 0; c < 3; ++c)
-  {
-    p[c] = static_cast<Number>(block.Rows[0][c]);
-    p[3 + c] = static_cast<Number>(block.Rows[1][c]);
-    p[6 + c] = static_cast<Number>(block.Rows[2][c]);
-  }
-}
 
 /// An edge between two triangles, with lengths in the unit of the energy.
 struct VariationEdge
 {
   std::array<Index, 2> Faces{};
-  double Length = 0.0;
-  double Weight = 1.0;
+  float Length = 0.0F;
+  float Weight = 1.0F;
   /// Per triangle, in its axes: the midpoint from the centroid, and the direction of the edge.
-  double Middle[2][2] = {};
-  double Along[2][2] = {};
+  float Middle[2][2] = {};
+  float Along[2][2] = {};
   /// Per triangle: 1 if the direction, turned to the left, leaves it, otherwise -1.
   std::array<float, 2> Side{};
 };
@@ -62,68 +40,51 @@ struct VariationEdge
 inline void AddDifferences(
   const VariationEdge& edge, int side, const VariationBlock& x, VariationBlock& v)
 {
-  const double sign = side == 0 ? 1.0 : -1.0;
-  const double mx = sign * edge.Middle[side][0], my = sign * edge.Middle[side][1];
-  const double ax = sign * edge.Along[side][0], ay = sign * edge.Along[side][1];
-  const double ox = -edge.Side[side] * edge.Along[side][1];
-  const double oy = edge.Side[side] * edge.Along[side][0];
-  for (int c = 0; c < 4; ++c)
-  {
-    v.Rows[0][c] += sign * x.Rows[0][c] + mx * x.Rows[1][c] + my * x.Rows[2][c];
-    v.Rows[1][c] += ax * x.Rows[1][c] + ay * x.Rows[2][c];
-    v.Rows[2][c] += ox * x.Rows[1][c] + oy * x.Rows[2][c];
-  }
+  const float sign = side == 0 ? 1.0F : -1.0F;
+  const float* const middle = edge.Middle[side];
+  const float* const along = edge.Along[side];
+  const float out = edge.Side[side];
+  v.Rows[0] += sign * (x.Rows[0] + middle[0] * x.Rows[1] + middle[1] * x.Rows[2]);
+  v.Rows[1] += sign * (along[0] * x.Rows[1] + along[1] * x.Rows[2]);
+  v.Rows[2] += out * (along[0] * x.Rows[2] - along[1] * x.Rows[1]);
 }
 
 /// y += the transpose of AddDifferences(), times the length.
 inline void AddForces(
   const VariationEdge& edge, int side, const VariationBlock& v, VariationBlock& y)
 {
-  const double sign = side == 0 ? edge.Length : -edge.Length;
-  const double mx = sign * edge.Middle[side][0], my = sign * edge.Middle[side][1];
-  const double ax = sign * edge.Along[side][0], ay = sign * edge.Along[side][1];
-  const double ox = -edge.Length * edge.Side[side] * edge.Along[side][1];
-  const double oy = edge.Length * edge.Side[side] * edge.Along[side][0];
-  for (int c = 0; c < 4; ++c)
-  {
-    y.Rows[0][c] += sign * v.Rows[0][c];
-    y.Rows[1][c] += mx * v.Rows[0][c] + ax * v.Rows[1][c] + ox * v.Rows[2][c];
-    y.Rows[2][c] += my * v.Rows[0][c] + ay * v.Rows[1][c] + oy * v.Rows[2][c];
-  }
+  const float sign = side == 0 ? edge.Length : -edge.Length;
+  const float* const middle = edge.Middle[side];
+  const float* const along = edge.Along[side];
+  const VariationRow out = edge.Length * edge.Side[side] * v.Rows[2];
+  const VariationRow first = sign * v.Rows[0];
+  const VariationRow second = sign * v.Rows[1];
+  y.Rows[0] += first;
+  y.Rows[1] += middle[0] * first + along[0] * second - along[1] * out;
+  y.Rows[2] += middle[1] * first + along[1] * second + along[0] * out;
 }
 
-inline double SquareOf(const double* row)
+/// The factor that shrinks a vector to a ball.
+inline float ShrinkingFactor(float square, float radius)
 {
-  return row[0] * row[0] + row[1] * row[1] + row[2] * row[2];
+  return square > radius * radius ? radius / std::sqrt(square) : 1.0F;
 }
 
 /// Shrink the rows of v to balls of the radii w a1 and w a0, a1 and a0 the weights of the orders.
 inline void Shrink(
-  const VariationEdge& edge, double weightOfFirst, double weightOfSecond, VariationBlock& v)
+  const VariationEdge& edge, float weightOfFirst, float weightOfSecond, VariationBlock& v)
 {
-  const double square = SquareOf(v.Rows[0]);
-  const double squares = SquareOf(v.Rows[1]) + SquareOf(v.Rows[2]);
-  const double first = edge.Weight * weightOfFirst;
-  const double second = edge.Weight * weightOfSecond;
-  const double f = square > first * first ? first / std::sqrt(square) : 1.0;
-  const double s = squares > second * second ? second / std::sqrt(squares) : 1.0;
-  for (int c = 0; c < 4; ++c)
-  {
-    v.Rows[0][c] *= f;
-    v.Rows[1][c] *= s;
-    v.Rows[2][c] *= s;
-  }
+  const float square = v.Rows[0].square().sum();
+  const float squares = (v.Rows[1].square() + v.Rows[2].square()).sum();
+  const float slope = ShrinkingFactor(squares, edge.Weight * weightOfSecond);
+  v.Rows[0] *= ShrinkingFactor(square, edge.Weight * weightOfFirst);
+  v.Rows[1] *= slope;
+  v.Rows[2] *= slope;
 }
 
-inline double Product(const VariationBlock& a, const VariationBlock& b)
+inline float Product(const VariationBlock& a, const VariationBlock& b)
 {
-  double sums[4] = {};
-  for (int c = 0; c < 4; ++c)
-  {
-    sums[c] =
-      a.Rows[0][c] * b.Rows[0][c] + a.Rows[1][c] * b.Rows[1][c] + a.Rows[2][c] * b.Rows[2][c];
-  }
-  return sums[0] + sums[1] + sums[2];
+  return (a.Rows[0] * b.Rows[0] + a.Rows[1] * b.Rows[1] + a.Rows[2] * b.Rows[2]).sum();
 }
 
 /// The edges of a surface over which the variation of normals is summed: those between two
