@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Solvers/NestedDissection.h"
-#include "Core/Solvers/SparseFactor.h"
+#include "Core/Solvers/Supernodes.h"
 #include "MeshFiles.h"
 #include "Meshes.h"
 
@@ -101,15 +101,10 @@ Eigen::Index EntriesOfFactor(const SparseMatrix& matrix, const std::vector<Index
   return SparseMatrix(factor.matrixL()).nonZeros();
 }
 
-/// Of a factorisation, from the entries of the columns of its factor below the diagonal.
-double Operations(const Index* begin, Eigen::Index columns)
+/// Of a factorisation.
+double Operations(const Supernodes& nodes)
 {
-  double sum = 0.0;
-  for (Eigen::Index j = 0; j < columns; ++j)
-  {
-    sum += std::pow(begin[j + 1] - begin[j], 2.0);
-  }
-  return sum;
+  return std::accumulate(nodes.Operations.begin(), nodes.Operations.end(), 0.0);
 }
 
 } // namespace
@@ -173,16 +168,22 @@ TEST(NestedDissection, IsForRegularTriangulations)
 }
 
 /// Regular as an icosphere, but the levels of the search are ragged.
-TEST(SparseFactor, TakesTheOrderOfFewerOperationsOnSubdividedScans)
+TEST(Supernodes, TakeTheOrderOfFewerOperationsOnSubdividedScans)
 {
   const SparseMatrix matrix = MatrixOf(Subdivided(ReadMeshFile("cactus"), 3));
   EXPECT_TRUE(IsRegular(matrix));
-  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> byDegree(
-    matrix);
-  const SparseMatrix ofDegree = byDegree.matrixL();
-  const double operations = Operations(ofDegree.outerIndexPtr(), matrix.cols());
-  SparseFactor factor;
-  factor.SetMatrix(matrix);
-  factor.Compute();
-  EXPECT_LE(Operations(factor.Begin.data(), matrix.cols()), 1.01 * operations);
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> order;
+  Eigen::AMDOrdering<Index>()(matrix, order);
+  order = order.inverse().eval();
+  const Supernodes byDegree(
+    matrix, std::vector<Index>(order.indices().data(), order.indices().data() + matrix.rows()));
+  EXPECT_LE(Operations(OrderedSupernodes(matrix, true)), Operations(byDegree));
+  EXPECT_LT(Operations(byDegree), 0.8 * Operations(Supernodes(matrix, NestedDissection(matrix))));
+}
+
+TEST(Supernodes, TakeNestedDissectionOnIcospheres)
+{
+  const SparseMatrix matrix = MatrixOf(Icosphere(5));
+  EXPECT_EQ(Operations(OrderedSupernodes(matrix, true)),
+    Operations(Supernodes(matrix, NestedDissection(matrix))));
 }

@@ -40,24 +40,14 @@ public:
     {
       return;
     }
-    // A factorisation cannot be stopped: it runs on its own data, and an abort drops it.
-    std::shared_ptr<SparseFactor> factor = std::move(this->Factor);
-    if (!factor || !factor->HasPatternOf(matrix))
+    std::unique_ptr<SparseFactor> factor = std::move(this->Factor); // an abort drops it
+    if (!factor)
     {
-      factor = std::make_shared<SparseFactor>();
+      factor = std::make_unique<SparseFactor>();
     }
     factor->SetMatrix(matrix);
     ++this->Factorizations;
-    constexpr Eigen::Index quick = 5000; // vertices, whose factorisation is not worth a thread
-    if (matrix.rows() < quick)
-    {
-      factor->Compute();
-      progress.Report(1.0);
-    }
-    else
-    {
-      RunInBackground([factor] { factor->Compute(); }, progress);
-    }
+    factor->Compute(this->Parallel, progress);
     if (!factor->IsPositive())
     {
       throw NotPositiveDefinite();
@@ -133,7 +123,7 @@ private:
   void SubstituteColumns(const Values& b, Values& x, int first, int count)
   {
     const Index n = static_cast<Index>(b.rows());
-    const Index* const place = this->Factor->Place;
+    const Index* const place = this->Factor->Place();
     Resize(this->W, n, K);
     double* const w = this->W.data();
     for (Index i = 0; i < n; ++i)
@@ -233,7 +223,7 @@ private:
 
   const ParallelFor& Parallel;
   const SparseMatrix* Matrix = nullptr;
-  std::shared_ptr<SparseFactor> Factor;
+  std::unique_ptr<SparseFactor> Factor;
   long Factorizations = 0;
   Values R, Correction;
   Values W; ///< in the order of the factor

@@ -12,57 +12,35 @@
 namespace SurfaceDiffusion
 {
 
-/// Eigen's decomposition, with its factor open to changes.
-struct SparseFactor::Decomposition
-  : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>>
+namespace
 {
-  SparseMatrix& L() { return this->m_matrix; }
 
-  /// Order the rows and find the pattern of the factor. On regular triangulations nested dissection
-  /// takes about 40 n^1.5 operations, and minimum degree from 20 n^1.5 on subdivided scans to 110
-  /// n^1.5 on icospheres.
-  void Analyze(const SparseMatrix& matrix)
+/// The smaller the time step, the faster the influence of vertices on each other falls off with
+/// distance: at steps of h^2/D and less, a third to two thirds of the entries are negligible.
+bool IsNegligible(double squaredEntry, double squaredDiagonal)
+{
+  constexpr double lastPlace = 1e-16;
+  return squaredEntry < lastPlace * lastPlace * squaredDiagonal;
+}
+
+} // namespace
+
+/// Eigen's decomposition, in an order that is given.
+struct SparseFactor::Decomposition : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>
+{
+  Decomposition(const SparseMatrix& matrix, const std::vector<Index>& places)
   {
-    constexpr double ofDissection = 40.0;
-    this->analyzePattern(matrix);
-    const double operations = this->Operations();
-    if (operations < ofDissection * std::pow(static_cast<double>(matrix.rows()), 1.5) ||
-      !IsRegular(matrix))
-    {
-      return;
-    }
-    const Order byDegree = this->m_P.indices();
-    const std::vector<Index> places = NestedDissection(matrix);
-    this->AnalyzeInOrder(matrix, Eigen::Map<const Order>(places.data(), matrix.rows()));
-    if (this->Operations() > operations)
-    {
-      this->AnalyzeInOrder(matrix, byDegree);
-    }
-  }
-
-private:
-  using Order = Eigen::Matrix<Index, Eigen::Dynamic, 1>;
-
-  /// Of the factorisation, in the order that was analysed.
-  double Operations() const { return this->m_nonZerosPerCol.template cast<double>().squaredNorm(); }
-
-  void AnalyzeInOrder(const SparseMatrix& matrix, const Order& places)
-  {
-    this->m_P.indices() = places;
+    using Order = Eigen::Matrix<Index, Eigen::Dynamic, 1>;
+    this->m_P.indices() = Eigen::Map<const Order>(places.data(), matrix.rows());
     this->m_Pinv = this->m_P.inverse();
     SparseMatrix ordered(matrix.rows(), matrix.cols());
     ordered.selfadjointView<Eigen::Upper>() =
       matrix.selfadjointView<Eigen::Lower>().twistedBy(this->m_P);
     this->analyzePattern_preordered(ordered, true);
   }
+
+  const SparseMatrix& L() const { return this->m_matrix; }
 };
-
-SparseFactor::SparseFactor()
-  : LDL(std::make_unique<Decomposition>())
-{
-}
-
-SparseFactor::~SparseFactor() = default;
 
 bool SparseFactor::HasPatternOf(const SparseMatrix& matrix) const
 {
@@ -79,7 +57,7 @@ bool SparseFactor::HasValuesOf(const SparseMatrix& matrix) const
     std::equal(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros(), this->Matrix.valuePtr());
 }
 
-void SparseFactor::Compute()
+void SparseFactor::Compute(const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   constexpr double resolved = 1e-14;
   SparseMatrix pruned;
@@ -92,43 +70,37 @@ void SparseFactor::Compute()
     pruned.prune([](Index, Index, double value) { return value != 0.0; });
   }
   const SparseMatrix& matrix = prune ? pruned : this->Matrix;
-  if (!this->IsAnalyzed || prune || this->IsPruned)
-  {
-    this->LDL->Analyze(matrix);
-    this->IsAnalyzed = true;
-    this->IsPruned = prune;
-  }
-  this->Succeeded = this->Factorize(matrix, 1.0);
-  if (!this->HasPivotsAbove(resolved))
-  {
-    this->Succeeded = this->Factorize(matrix, 1.0 + resolved);
-  }
+  this->Succeeded = false;
   this->InverseDiagonal = this->Matrix.diagonal().cwiseInverse();
-  if (this->Succeeded)
+  this->D.resize(matrix.rows());
+  const PivotCounts pivots =
+    this->Numbers.Compute(matrix, IsRegular(matrix), resolved, parallel, progress.Part(0.0, 0.9));
+  if (pivots.Open == 0)
   {
-    this->InverseD = this->D.cwiseInverse();
-    this->DropNegligible();
-    this->FindPanels();
-    this->OrderPanels();
+    this->TakeNumbers();
   }
-}
-
-/// With the diagonal of the matrix times `diagonalFactor`; false if the factorisation broke down.
-bool SparseFactor::Factorize(const SparseMatrix& matrix, double diagonalFactor)
-{
-  this->LDL->setShift(0.0, diagonalFactor);
-  this->LDL->factorize(matrix);
-  if (this->LDL->info() != Eigen::Success)
+  this->Numbers.DropEntries();
+  if (pivots.Open > 0)
   {
-    return false;
+    Decomposition decomposition(matrix, this->Numbers.Structure().Place);
+    for (const double diagonalFactor : { 1.0, 1.0 + resolved })
+    {
+      decomposition.setShift(0.0, diagonalFactor);
+      decomposition.factorize(matrix);
+      this->Succeeded = decomposition.info() == Eigen::Success;
+      this->D = decomposition.vectorD();
+      if (this->HasPivotsAbove(resolved))
+      {
+        break;
+      }
+    }
+    if (this->Succeeded)
+    {
+      this->TakeColumns(decomposition.L());
+    }
   }
-  SparseMatrix& l = this->LDL->L();
-  this->Place = this->LDL->permutationP().indices().data();
-  this->D = this->LDL->vectorD();
-  this->Begin.assign(l.outerIndexPtr(), l.outerIndexPtr() + l.cols() + 1);
-  this->Rows = l.innerIndexPtr();
-  this->Entries = l.valuePtr();
-  return true;
+  this->InverseD = this->D.cwiseInverse();
+  progress.Report(1.0);
 }
 
 /// Whether every pivot is above `bound` times its diagonal entry.
@@ -141,7 +113,7 @@ bool SparseFactor::HasPivotsAbove(double bound) const
   const Vector diagonal = this->Matrix.diagonal();
   for (Eigen::Index i = 0; i < diagonal.size(); ++i)
   {
-    if (!(this->D[this->Place[i]] > bound * std::abs(diagonal[i])))
+    if (!(this->D[this->Place()[i]] > bound * std::abs(diagonal[i])))
     {
       return false;
     }
@@ -149,82 +121,72 @@ bool SparseFactor::HasPivotsAbove(double bound) const
   return true;
 }
 
-/// The smaller the time step, the faster the influence of vertices on each other falls off with
-/// distance: at steps of h^2/D and less, a third to two thirds of the entries are negligible. The
-/// others move together in place.
-void SparseFactor::DropNegligible()
+/// D and L from the Cholesky factor.
+void SparseFactor::TakeNumbers()
 {
-  constexpr double lastPlace = 1e-16;
-  const auto n = static_cast<Index>(this->D.size());
-  Index* const rows = this->LDL->L().innerIndexPtr();
-  double* const entries = this->LDL->L().valuePtr();
-  Index kept = 0;
-  for (Index j = 0, begin = 0; j < n; ++j)
+  const Supernodes& nodes = this->Numbers.Structure();
+  this->L.Clear(this->Numbers.Memory() / sizeof(double));
+  for (Index s = 0; s < nodes.Count(); ++s)
   {
-    const Index end = this->Begin[j + 1];
-    for (Index slot = begin; slot < end; ++slot)
+    for (Index p = 0; p < nodes.Pivots(s); ++p)
     {
-      const Index i = rows[slot];
-      const double value = entries[slot];
-      if (!(value * value * std::abs(this->D[j]) < lastPlace * lastPlace * std::abs(this->D[i])))
-      {
-        rows[kept] = i;
-        entries[kept] = value;
-        ++kept;
-      }
+      const double pivot = this->Numbers.Pivot(s, p);
+      this->D[nodes.First[s] + p] = pivot * pivot;
     }
-    begin = end;
-    this->Begin[j + 1] = kept;
   }
+  FactorPanels::Column column;
+  std::vector<double> entries;
+  for (Index s = 0; s < nodes.Count(); ++s)
+  {
+    const Index first = nodes.First[s];
+    const Index k = nodes.Pivots(s);
+    const Index height = k + nodes.RowsBelow(s);
+    const Index* const below = nodes.Below(s);
+    entries.resize(static_cast<std::size_t>(height));
+    for (Index p = 0; p < k; ++p)
+    {
+      this->Numbers.CopyColumn(s, p, entries.data());
+      const double inversePivot = 1.0 / entries[p];
+      column.Rows.resize(entries.size());
+      column.Entries.resize(entries.size());
+      std::size_t kept = 0;
+      for (Index i = p + 1; i < height; ++i)
+      {
+        const Index row = i < k ? first + i : below[i - k];
+        column.Rows[kept] = row;
+        column.Entries[kept] = entries[i] * inversePivot;
+        kept += !IsNegligible(entries[i] * entries[i], this->D[row]);
+      }
+      column.Rows.resize(kept);
+      column.Entries.resize(kept);
+      this->L.Append(column);
+    }
+  }
+  this->L.Finish();
+  this->Succeeded = true;
 }
 
-void SparseFactor::FindPanels()
+/// L from the columns of a matrix.
+void SparseFactor::TakeColumns(const SparseMatrix& l)
 {
-  const auto n = static_cast<Index>(this->D.size());
-  const auto nested = [&](Index j) // the columns j and j + 1
+  this->L.Clear(static_cast<std::size_t>(l.nonZeros()));
+  FactorPanels::Column column;
+  for (Eigen::Index j = 0; j < l.cols(); ++j)
   {
-    const Index begin = this->Begin[j];
-    const Index next = this->Begin[j + 1];
-    return next > begin && this->Rows[begin] == j + 1 &&
-      next - begin - 1 == this->Begin[j + 2] - next &&
-      std::equal(this->Rows + begin + 1, this->Rows + next, this->Rows + next);
-  };
-  this->Panels.clear();
-  for (Index j = 0; j < n;)
-  {
-    this->Panels.push_back(j);
-    Index width = 1;
-    while (width < WidestPanel && j + width < n && nested(j + width - 1))
+    column.Rows.clear();
+    column.Entries.clear();
+    for (SparseMatrix::InnerIterator entry(l, j); entry; ++entry)
     {
-      ++width;
-    }
-    j += width;
-  }
-  this->Panels.push_back(n);
-}
-
-/// From column by column to the order of SparseFactor::Begin, in place: substitution then reads the
-/// factor as one stream.
-void SparseFactor::OrderPanels()
-{
-  double* const entries = this->LDL->L().valuePtr();
-  std::vector<double> columns;
-  for (std::size_t p = 0; p + 1 < this->Panels.size(); ++p)
-  {
-    const Index first = this->Panels[p];
-    const Index width = this->Panels[p + 1] - first;
-    const Index begin = this->Begin[first];
-    columns.assign(entries + begin, entries + this->Begin[first + width]);
-    const Index rows = width + this->Begin[first + width] - this->Begin[first + width - 1];
-    double* next = entries + begin;
-    for (Index row = 1; row < rows; ++row)
-    {
-      for (Index a = 0; a < std::min(row, width); ++a)
+      const double value = entry.value();
+      if (!IsNegligible(value * value * std::abs(this->D[j]), std::abs(this->D[entry.row()])))
       {
-        *next++ = columns[static_cast<std::size_t>(this->Begin[first + a] - begin + row - a - 1)];
+        column.Rows.push_back(static_cast<Index>(entry.row()));
+        column.Entries.push_back(value);
       }
     }
+    this->L.Append(column);
   }
+  this->L.Finish();
 }
 
 } // namespace SurfaceDiffusion

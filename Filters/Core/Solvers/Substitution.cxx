@@ -12,20 +12,22 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Columns j .. j + Width - 1 of L; see SparseFactor::Begin.
+/// A panel of L; see FactorPanels.
 template <int Width>
 struct Panel
 {
-  Panel(const SparseFactor& l, Index j)
-    : Within(l.Entries + l.Begin[j])
+  Panel(const FactorPanels& l, Index number)
+    : First(l.FirstColumn(number))
+    , Within(l.EntriesOf(number))
     , Below(this->Within + Width * (Width - 1) / 2)
-    , Rows(l.Rows + l.Begin[j + Width - 1])
-    , Count(l.Begin[j + Width] - l.Begin[j + Width - 1])
+    , Rows(l.RowsOf(number))
+    , Count(l.NumberOfRows(number))
   {
   }
-  /// The entry in row j + b of column j + a, a < b.
+  /// The entry in row First + b of column First + a, a < b.
   double At(int b, int a) const { return this->Within[b * (b - 1) / 2 + a]; }
 
+  const Index First; ///< column
   const double* Within; ///< the entries in the panel's own rows
   const double* Below; ///< those in the rows below
   const Index* Rows; ///< below the panel
@@ -36,7 +38,7 @@ struct Panel
 template <typename Work>
 void ForWidth(Index width, const Work& work)
 {
-  ForNumber<SparseFactor::WidestPanel>(width,
+  ForNumber<FactorPanels::Widest>(width,
     [&](auto number)
     {
       if constexpr (decltype(number)::value > 0)
@@ -52,12 +54,12 @@ double* Row(double* w, Index i)
   return w + static_cast<std::ptrdiff_t>(i) * K;
 }
 
-/// The part of W = L^-1 W that belongs to the columns j .. j + Width - 1 of L.
+/// The part of W = L^-1 W that belongs to a panel of L.
 template <int K, int Width>
-void Forward(const SparseFactor& factor, double* all, Index j)
+void Forward(const SparseFactor& factor, double* all, Index number)
 {
-  const Panel<Width> panel(factor, j);
-  double* const result = Row<K>(all, j);
+  const Panel<Width> panel(factor.L, number);
+  double* const result = Row<K>(all, panel.First);
   double w[Width * K];
   for (int c = 0; c < Width * K; ++c)
   {
@@ -101,18 +103,18 @@ void Forward(const SparseFactor& factor, double* all, Index j)
   }
 }
 
-/// The rows j .. j + Width - 1 of W = L^-T D^-1 W.
+/// The rows of W = L^-T D^-1 W that are the columns of a panel of L.
 template <int K, int Width>
-void Backward(const SparseFactor& factor, double* all, Index j)
+void Backward(const SparseFactor& factor, double* all, Index number)
 {
-  const Panel<Width> panel(factor, j);
-  double* const result = Row<K>(all, j);
+  const Panel<Width> panel(factor.L, number);
+  double* const result = Row<K>(all, panel.First);
   double w[Width * K];
   for (int a = 0; a < Width; ++a)
   {
     for (int c = 0; c < K; ++c)
     {
-      w[a * K + c] = factor.InverseD[j + a] * result[a * K + c];
+      w[a * K + c] = factor.InverseD[panel.First + a] * result[a * K + c];
     }
   }
   for (Index s = 0; s < panel.Count; ++s)
@@ -147,16 +149,15 @@ void Backward(const SparseFactor& factor, double* all, Index j)
 template <int K>
 void Substitute(const SparseFactor& factor, double* w)
 {
-  const std::vector<Index>& panels = factor.Panels;
-  for (std::size_t p = 0; p + 1 < panels.size(); ++p)
+  for (Index p = 0; p < factor.L.Count(); ++p)
   {
-    ForWidth(panels[p + 1] - panels[p],
-      [&](auto width) { Forward<K, decltype(width)::value>(factor, w, panels[p]); });
+    ForWidth(
+      factor.L.Width(p), [&](auto width) { Forward<K, decltype(width)::value>(factor, w, p); });
   }
-  for (std::size_t p = panels.size() - 1; p > 0; --p)
+  for (Index p = factor.L.Count() - 1; p >= 0; --p)
   {
-    ForWidth(panels[p] - panels[p - 1],
-      [&](auto width) { Backward<K, decltype(width)::value>(factor, w, panels[p - 1]); });
+    ForWidth(
+      factor.L.Width(p), [&](auto width) { Backward<K, decltype(width)::value>(factor, w, p); });
   }
 }
 

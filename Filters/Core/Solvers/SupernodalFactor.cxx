@@ -83,6 +83,7 @@ PivotCounts SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular
   if (!isKnown)
   {
     this->Outer.clear(); // until the order is complete
+    this->Entries = Buffer<double>();
     this->Nodes = Order(matrix, isRegular, progress.Part(0.0, 0.5));
     this->Begin.assign(1, 0);
     for (Index s = 0; s < this->Nodes.Count(); ++s)
@@ -92,9 +93,12 @@ PivotCounts SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular
         tiles * static_cast<std::size_t>(TileRows) *
           static_cast<std::size_t>(this->Nodes.Pivots(s)));
     }
-    this->Entries = Buffer<double>(this->Begin.back());
     this->Inner.assign(inner, inner + outer[n]);
     this->Outer = outerNow;
+  }
+  if (this->Entries.size() != this->Begin.back())
+  {
+    this->Entries = Buffer<double>(this->Begin.back());
   }
   const Supernodes& nodes = this->Nodes;
   Vector smallest(n);
@@ -169,6 +173,21 @@ PivotCounts SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular
   return total;
 }
 
+void SupernodalFactor::CopyColumn(Index s, Index p, double* entries) const
+{
+  const std::ptrdiff_t stride = this->TileStride(s);
+  const double* tile = this->Panel(s) + static_cast<std::ptrdiff_t>(p) * TileRows;
+  const auto copy = [&](Index count)
+  {
+    for (Index i = 0; i < count; i += TileRows, tile += stride)
+    {
+      entries = std::copy_n(tile, std::min(TileRows, count - i), entries);
+    }
+  };
+  copy(this->Nodes.Pivots(s));
+  copy(this->Nodes.RowsBelow(s));
+}
+
 void SupernodalFactor::FactorizeNode(const SparseMatrix& matrix, const Vector& smallest, Index s,
   std::vector<Update>& updates, PivotCounts& pivots, const ParallelFor& parallel)
 {
@@ -179,7 +198,7 @@ void SupernodalFactor::FactorizeNode(const SparseMatrix& matrix, const Vector& s
   const Index* const rows = nodes.Below(s);
   double* const panel = this->Panel(s);
   std::fill(panel, this->Panel(s + 1), 0.0);
-  const std::ptrdiff_t tile = static_cast<std::ptrdiff_t>(TileRows) * k;
+  const std::ptrdiff_t tile = this->TileStride(s);
   double* const panelBelow = panel + this->DiagonalTiles(s) * tile;
   for (Index p = 0; p < k; ++p)
   {
@@ -282,7 +301,7 @@ void SupernodalFactor::AddChild(Index s, Index child, const double* update, doub
     place[i] = at;
   }
   auto* const panel = const_cast<double*>(this->Panel(s));
-  const std::ptrdiff_t tile = static_cast<std::ptrdiff_t>(TileRows) * k;
+  const std::ptrdiff_t tile = this->TileStride(s);
   double* const panelBelow = panel + this->DiagonalTiles(s) * tile;
   for (Index i = 0; i < count; ++i)
   {
@@ -315,7 +334,7 @@ PivotCounts SupernodalFactor::EliminatePivots(
   const Index k = this->Nodes.Pivots(s);
   const Index diagonal = this->DiagonalTiles(s);
   const Index tiles = diagonal + this->TilesBelow(s);
-  const std::ptrdiff_t tile = static_cast<std::ptrdiff_t>(TileRows) * k;
+  const std::ptrdiff_t tile = this->TileStride(s);
   double* const panel = this->Panel(s);
   PivotCounts pivots;
   const auto width = [&](Index j) { return std::min(TileRows, k - j * TileRows); };

@@ -15,10 +15,9 @@ namespace SurfaceDiffusion
 {
 
 /// P A P^T = L L^T for a symmetric positive definite matrix A by the multifrontal method (I. Duff,
-/// J. Reid, ACM Trans. Math. Softw. 9, 1983) in dense tiles. Made for the matrices of fourth-order
-/// operators, whose factors have four times the entries of those of second order: SparseFactor is
-/// the simpler one where factors are small. All threads take part, and no bit depends on their
-/// number.
+/// J. Reid, ACM Trans. Math. Softw. 9, 1983) in dense tiles. All threads take part, and no bit depends
+/// on their number. SparseFactor has the same numbers in the order in which substitution of few
+/// columns reads them.
 class SupernodalFactor
 {
 public:
@@ -45,6 +44,16 @@ public:
     const ParallelFor& parallel, const ProgressMonitor& progress = ProgressMonitor()) const;
 
   const Supernodes& Structure() const { return this->Nodes; }
+  /// The diagonal entry of L of pivot p of supernode s.
+  double Pivot(Index s, Index p) const
+  {
+    return this->Panel(s)[p / TileRows * this->TileStride(s) + p * TileRows + p % TileRows];
+  }
+  /// The entries of the column of L of pivot p of supernode s: its pivots' rows, of which those
+  /// before p are not defined, and the rows below.
+  void CopyColumn(Index s, Index p, double* entries) const;
+  /// Keep the order alone.
+  void DropEntries() { this->Entries = Buffer<double>(); }
   /// Bytes of L.
   std::size_t Memory() const { return this->Entries.size() * sizeof(double); }
 
@@ -56,6 +65,11 @@ private:
   void AddChild(Index s, Index child, const double* update, double* own) const;
   PivotCounts EliminatePivots(Index s, const double* smallest, const ParallelFor& parallel);
 
+  /// From a tile of the panel of s to the next one.
+  std::ptrdiff_t TileStride(Index s) const
+  {
+    return static_cast<std::ptrdiff_t>(TileRows) * this->Nodes.Pivots(s);
+  }
   Index DiagonalTiles(Index s) const { return NumberOfTiles(this->Nodes.Pivots(s)); }
   Index TilesBelow(Index s) const { return NumberOfTiles(this->Nodes.RowsBelow(s)); }
   double* Panel(Index s) { return this->Entries.data() + this->Begin[s]; }

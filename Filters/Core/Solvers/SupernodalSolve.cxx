@@ -59,7 +59,7 @@ void SupernodalFactor::SolvePanel(
     const Index k = nodes.Pivots(s);
     const Index r = nodes.RowsBelow(s);
     const Index* const rows = nodes.Below(s);
-    const std::ptrdiff_t tile = static_cast<std::ptrdiff_t>(TileRows) * k;
+    const std::ptrdiff_t tile = this->TileStride(s);
     const double* l = this->Panel(s);
     double* const known = row(nodes.First[s]);
     if (std::all_of(known, row(nodes.First[s + 1]), [](double number) { return number == 0.0; }))
@@ -96,7 +96,7 @@ void SupernodalFactor::SolvePanel(
     const Index k = nodes.Pivots(s);
     const Index r = nodes.RowsBelow(s);
     const Index* const rows = nodes.Below(s);
-    const std::ptrdiff_t tile = static_cast<std::ptrdiff_t>(TileRows) * k;
+    const std::ptrdiff_t tile = this->TileStride(s);
     const Index diagonal = this->DiagonalTiles(s);
     const double* const panel = this->Panel(s);
     double* const unknown = row(nodes.First[s]);

@@ -7,6 +7,7 @@
 #include <Eigen/OrderingMethods>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -260,18 +261,21 @@ Supernodes::Supernodes(const SparseMatrix& matrix, std::vector<Index> order)
 
 Supernodes OrderedSupernodes(const SparseMatrix& matrix, bool isRegular)
 {
+  // Of second order, nested dissection takes about 20 n^1.5 operations on regular triangulations, and
+  // minimum degree from 10 n^1.5 on subdivided scans to 55 n^1.5 on icospheres.
+  constexpr double ofDissection = 20.0;
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> degree;
   Eigen::AMDOrdering<Index>()(matrix, degree);
   const auto n = static_cast<std::size_t>(matrix.rows());
   Supernodes byDegree(
     matrix, Inverse(std::vector<Index>(degree.indices().data(), degree.indices().data() + n)));
-  if (!isRegular)
+  const auto total = [](const Supernodes& nodes)
+  { return std::accumulate(nodes.Operations.begin(), nodes.Operations.end(), 0.0); };
+  if (!isRegular || total(byDegree) < ofDissection * std::pow(static_cast<double>(n), 1.5))
   {
     return byDegree;
   }
   Supernodes byDissection(matrix, NestedDissection(matrix));
-  const auto total = [](const Supernodes& nodes)
-  { return std::accumulate(nodes.Operations.begin(), nodes.Operations.end(), 0.0); };
   return total(byDissection) < total(byDegree) ? byDissection : byDegree;
 }
 
