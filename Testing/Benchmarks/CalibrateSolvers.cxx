@@ -112,7 +112,7 @@ struct Regression
 
 struct Table
 {
-  Line Factor{ "Factor", "x s^1.5" };
+  Line Factor{ "Factor", "x s^1.35" };
   Line Substitution{ "Substitution", "x s^1.4" };
   Line LocalSubstitution{ "LocalSubstitution", "x c^0.2 s: in short steps the factor is sparser" };
   Line SingleIteration{ "SingleIteration", "x s" };
@@ -131,7 +131,7 @@ struct Table
   void MeasureDirect(const HeatSystem& system, double s, double c)
   {
     const Cost direct = Measure(system, SolverMethod::Direct);
-    this->Factor.Add(direct.SetUp, std::pow(s, 1.5));
+    this->Factor.Add(direct.SetUp, std::pow(s, 1.35));
     if (c >= 100.0)
     {
       this->Substitution.Add(direct.Solve, std::pow(s, 1.4));

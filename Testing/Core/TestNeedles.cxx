@@ -142,6 +142,22 @@ TEST(Needles, MultigridFallsBackOnAFactorisation)
   }
 }
 
+// The last places of the solution leave more than the tolerance, and iterations do not change that.
+TEST(Needles, NoIterationsFollowAFactorisationWhoseResidualIsRoundOff)
+{
+  for (const Testing::Surface& surface : { TorusWithSeam(150), ContourOfGrid(150) })
+  {
+    HeatSteps steps(surface, 100.0);
+    steps.Task.NumberOfSolves = 100.0;
+    const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, steps.Task);
+    EXPECT_EQ(choice.Method, SolverMethod::Direct);
+    EXPECT_TRUE(choice.FallsBack);
+    int iterations = 0;
+    steps.Run(*MakeSolver(choice), iterations);
+    EXPECT_EQ(iterations, 0);
+  }
+}
+
 TEST(Needles, AutomaticHasTheSameBitsOnAnyNumberOfThreads)
 {
   for (const Testing::Surface& surface :

@@ -31,9 +31,10 @@ constexpr double AnisotropicCycles = 0.2; // x min(anisotropy, c) to this power
 constexpr double SmallestDiffusionNumber = 1e-2; // below, nothing changes
 constexpr double SteadyState = 1e4; // the diffusion number that a steady state is as long as
 
-// Iterations run on all threads, and a factorisation on one. This is their share of the time on one
-// thread, between that of one thread and of two.
-constexpr double Threads = 0.75;
+// Iterations run on all threads, of a factorisation only the numbers, which are the smaller part.
+// This is the share of the time on one thread that iterations take, relative to that of
+// factorisations, between one thread and two.
+constexpr double Threads = 0.85;
 // On meshes where conjugate gradients give up, multigrid takes the cycles of steps that are longer
 // by this factor.
 constexpr double Hardness = 30.0;
@@ -78,7 +79,7 @@ public:
     const double substitution = this->Columns(SubstitutionColumn) *
       std::min(Substitution * std::pow(this->S, 1.4),
         LocalSubstitution * std::pow(this->C, 0.2) * this->S);
-    return Factor * std::pow(this->S, 1.5) + this->Task.NumberOfSolves * substitution;
+    return Factor * std::pow(this->S, 1.35) + this->Task.NumberOfSolves * substitution;
   }
 
   /// Of conjugate gradients with the diagonal.
