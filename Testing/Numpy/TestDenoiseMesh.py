@@ -117,7 +117,9 @@ class DenoiseMesh(unittest.TestCase):
         expected = sd.denoise_mesh(noisy)
         shift = np.array([300.0, -20.0, 7.0])
         found = sd.denoise_mesh((1000 * noisy.points + shift, noisy.triangles))
-        np.testing.assert_allclose((found - shift) / 1000, expected, atol=1e-9)
+        # of the mean edge length: the variation of normals is minimised in single precision
+        difference = np.abs((found - shift) / 1000 - expected.points).max()
+        self.assertLess(difference, 1e-6 * expected.mean_edge_length)
 
     def test_seams_come_apart_with_a_warning_unless_their_points_are_merged(self):
         noisy, _ = noisy_sphere(refinements=3)

@@ -3,6 +3,7 @@
 #include "Core/Solvers/FactorPanels.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
