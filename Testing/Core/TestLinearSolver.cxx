@@ -4,6 +4,7 @@
 #include "Core/Operators/ResidualSquares.h"
 #include "Core/Solvers/SolverChoice.h"
 #include "Meshes.h"
+#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -367,6 +368,60 @@ TEST_P(AnySolver, GivesEveryColumnTheBitsItHasAlone)
       solver->Solve(b.col(k), alone);
       EXPECT_EQ(x.col(k), alone.col(0)) << k << " of " << columns;
     }
+  }
+}
+
+namespace
+{
+
+/// What a Dirichlet condition at every third vertex leaves: zeros.
+SparseMatrix WithDirichletRows(SparseMatrix matrix)
+{
+  for (Index i = 0; i < static_cast<Index>(matrix.rows()); ++i)
+  {
+    for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
+    {
+      a.valueRef() = i != a.index() && (i % 3 == 0 || a.index() % 3 == 0) ? 0.0 : a.value();
+    }
+  }
+  return matrix;
+}
+
+} // namespace
+
+/// Patterns change, zeros are left out, and pivots are regularised, in turn.
+TEST(Cholesky, HasTheBitsOfANewOneAfterAnyOtherMatrixAndAnyAbort)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const SparseMatrix heat = HeatMatrix(*assembler, 1.0);
+  const std::vector<SparseMatrix> matrices{ heat, WithDirichletRows(heat),
+    HeatMatrix(*assembler, 1e18), HeatMatrix(*MakeAssembler(Icosphere(3)), 1.0), heat };
+  const ThreadedFor threads(3);
+  const auto solver = MakeCholeskySolver(threads);
+  for (const SparseMatrix& matrix : matrices)
+  {
+    const Values b = Values::Random(matrix.rows(), 2);
+    Values expected, found;
+    const auto other = MakeCholeskySolver();
+    other->SetMatrix(matrix);
+    other->Solve(b, expected);
+    int allowed = 0;
+    for (bool isAborted = true; isAborted; ++allowed)
+    {
+      int reports = 0;
+      const ProgressMonitor::Callback stop = [&](double) { return ++reports <= allowed; };
+      try
+      {
+        solver->SetMatrix(matrix, ProgressMonitor(stop));
+        isAborted = false;
+      }
+      catch (const Aborted&)
+      {
+      }
+    }
+    EXPECT_GT(allowed, 3);
+    solver->Solve(b, found);
+    EXPECT_TRUE(found == expected);
   }
 }
 

@@ -44,11 +44,11 @@ struct HeatSteps
     this->Task.NumberOfSolves = Steps;
   }
 
-  /// The state after the steps, and the sum of the iterations.
-  Values Run(LinearSolver& solver, int& iterations) const
+  /// The state after the steps, and the sum of the iterations. unit: of the data.
+  Values Run(LinearSolver& solver, int& iterations, double unit = 1.0) const
   {
     solver.SetMatrix(this->Matrix);
-    Values u = Noise(*this->Mesh);
+    Values u = unit * Noise(*this->Mesh);
     iterations = 0;
     for (int step = 0; step < Steps; ++step)
     {
@@ -152,9 +152,12 @@ TEST(Needles, NoIterationsFollowAFactorisationWhoseResidualIsRoundOff)
     const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, steps.Task);
     EXPECT_EQ(choice.Method, SolverMethod::Direct);
     EXPECT_TRUE(choice.FallsBack);
-    int iterations = 0;
-    steps.Run(*MakeSolver(choice), iterations);
-    EXPECT_EQ(iterations, 0);
+    for (const double unit : { 1.0, 1e-160, 1e160 })
+    {
+      int iterations = 0;
+      steps.Run(*MakeSolver(choice), iterations, unit);
+      EXPECT_EQ(iterations, 0) << unit;
+    }
   }
 }
 

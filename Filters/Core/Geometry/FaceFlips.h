@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Parallel.h"
 #include "Core/Surface/TriangleMesh.h"
 
 #include <vector>

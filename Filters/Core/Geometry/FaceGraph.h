@@ -31,8 +31,8 @@ struct FaceGeometry
   SurfaceDiffusion::Points Normals;
   Vector Areas;
   SurfaceDiffusion::Points Centroids;
-  /// The mean distance of the centroid from those of the neighbours across edges, by that from those
-  /// of the triangles that share a vertex; 0 without such. Filters of normals have this width.
+  /// The mean distance to the centroids of the neighbours across edges, estimated as 1/1.5 of that
+  /// to the triangles that share a vertex; 0 without any. Filters of normals have this width.
   Vector Widths;
 
   /// points: per vertex of the mesh. The widths stay.

@@ -46,8 +46,8 @@ NeighbourWeights::NeighbourWeights(const FaceGraph& graph, const FaceGeometry& g
   : Graph(graph)
   , Geometry(geometry)
   , Guide(guide)
-  , Distance(0.5 / (settings.Width * settings.Width))
-  , Range(0.5 / (settings.Range * settings.Range))
+  , DistanceFactor(0.5 / (settings.Width * settings.Width))
+  , RangeFactor(0.5 / (settings.Range * settings.Range))
 {
 }
 
@@ -63,7 +63,7 @@ void NeighbourWeights::Find(Index f, std::vector<double>& weights) const
       (this->Geometry.Centroids.row(g) - this->Geometry.Centroids.row(f)).squaredNorm();
     const double widths = this->Geometry.Widths[f] * this->Geometry.Widths[g];
     const double difference = (this->Guide.row(g) - this->Guide.row(f)).squaredNorm();
-    weights[k] = FallOff(this->Distance * distance / widths + this->Range * difference);
+    weights[k] = FallOff(this->DistanceFactor * distance / widths + this->RangeFactor * difference);
   }
 }
 

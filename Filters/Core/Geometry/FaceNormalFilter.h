@@ -4,6 +4,8 @@
 
 #include "Core/Geometry/FaceGraph.h"
 
+#include <vector>
+
 namespace SurfaceDiffusion
 {
 
@@ -15,7 +17,7 @@ struct NormalFilterSettings
 
 /// The guide of a filter of normals: per triangle the mean normal of those that share a vertex with
 /// it, with narrow spatial weights, which is less noisy than its own but hardly blurred over sharp
-/// edges.
+/// edges. All filters need the widths of the geometry.
 Points MakeGuide(const FaceGraph& graph, const FaceGeometry& geometry,
   const NormalFilterSettings& settings, const ParallelFor& parallel);
 
@@ -33,8 +35,8 @@ private:
   const FaceGraph& Graph;
   const FaceGeometry& Geometry;
   const Points& Guide;
-  const double Distance; ///< 1 / (2 Width^2)
-  const double Range; ///< 1 / (2 Range^2)
+  const double DistanceFactor; ///< 1 / (2 Width^2)
+  const double RangeFactor; ///< 1 / (2 Range^2)
 };
 
 /// Filters the normals n_f of the triangles: the joint bilateral filter over the triangles that

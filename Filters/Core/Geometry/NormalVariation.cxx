@@ -48,8 +48,8 @@ inline Block DifferencesAt(const Edge& edge, const Block* x)
 SURFACEDIFFUSION_ANY_VECTORS void UpdateMultipliers(const Edge* edges, const Block* state,
   const NormalVariationSettings& settings, Block* multipliers, Index begin, Index end)
 {
-  const float first = static_cast<float>(settings.First);
-  const float second = static_cast<float>(settings.Second);
+  const auto first = static_cast<float>(settings.First);
+  const auto second = static_cast<float>(settings.Second);
   for (Index e = begin; e < end; ++e)
   {
     const Edge& edge = edges[e];
@@ -247,11 +247,11 @@ private:
     const bool isFirst = this->State.empty();
     if (isFirst)
     {
-      this->State.resize(count);
       this->Forces.resize(count);
       this->Direction.resize(count);
       this->Given.resize(count);
       this->Multipliers.resize(static_cast<std::size_t>(this->Edges.Size()));
+      this->State.resize(count); // last: with it, this is the second time
     }
     ForEach(this->Parallel, this->Graph.NumberOfFaces(),
       [&](Index f)

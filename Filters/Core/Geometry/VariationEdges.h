@@ -13,7 +13,7 @@
 namespace SurfaceDiffusion
 {
 
-/// A row of three numbers and a 0: four of them in single precision are a vector of every processor.
+/// A row of three numbers and a 0: four in single precision are a vector of every processor.
 using VariationRow = Eigen::Array4f;
 
 /// The normal and the slope of a triangle, or their differences at an edge: of the normal, and of

@@ -14,7 +14,7 @@ void FactorPanels::Clear(std::size_t entries)
   this->First.assign(1, 0);
   this->EntriesBegin.assign(1, 0);
   this->RowsBegin.assign(1, 0);
-  this->Entries.reserve(entries); // memory that is not written to is not taken
+  this->Entries.reserve(entries);
 }
 
 void FactorPanels::Append(Column& column)

@@ -12,8 +12,8 @@ namespace SurfaceDiffusion
 
 /// The entries of a unit lower triangular matrix below its diagonal as one stream, in the order in
 /// which substitution needs them. A panel is up to Widest columns that follow each other, each of
-/// which has the rows of the next one and the next one itself below its diagonal: substitution reads
-/// the rows, and the right-hand side in them, once for all columns.
+/// which has the rows of the next one and the next one itself below its diagonal: substitution
+/// reads the rows, and the right-hand side in them, once for all columns.
 class FactorPanels
 {
 public:
@@ -43,9 +43,9 @@ public:
     std::vector<double> Entries;
   };
 
-  /// Without columns. entries: as many as there may be.
+  /// Remove all columns. entries: as many as there will be, for which memory is taken.
   void Clear(std::size_t entries);
-  /// Append a column; its contents become those of another one.
+  /// Append a column, whose contents are taken: it is left with others.
   void Append(Column& column);
   /// Call this after the last column.
   void Finish();

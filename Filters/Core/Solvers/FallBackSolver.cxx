@@ -46,33 +46,6 @@ bool HasUnresolvedNeedles(
   return Sum(parallel, n, ofNeedle) > tolerance * tolerance * Sum(parallel, n, square);
 }
 
-/// What the last places of the entries of x leave of the residual of A x = b, in the norm of
-/// SolveReport::Residual. On needles it is above the tolerance.
-double RoundOff(
-  const SparseMatrix& matrix, const Values& b, const Values& x, const ParallelFor& parallel)
-{
-  const auto n = static_cast<Index>(b.rows());
-  Vector weights(n);
-  ForEach(parallel, n, [&](Index i) { weights[i] = 1.0 / DiagonalEntry(matrix, i); });
-  double largest = 0.0;
-  for (Eigen::Index c = 0; c < b.cols(); ++c)
-  {
-    const double ofTerms = Sum(parallel, n,
-      [&](Index i)
-      {
-        double terms = 0.0;
-        for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
-        {
-          terms += std::abs(matrix.valuePtr()[slot] * x(matrix.innerIndexPtr()[slot], c));
-        }
-        return weights[i] * terms * terms;
-      });
-    const double ofB = Sum(parallel, n, [&](Index i) { return weights[i] * b(i, c) * b(i, c); });
-    largest = std::max(largest, ofTerms / ofB);
-  }
-  return std::numeric_limits<double>::epsilon() * std::sqrt(largest);
-}
-
 } // namespace
 
 void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress)
@@ -193,7 +166,7 @@ SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMoni
       // What a factorisation leaves is round-off.
       const bool isRoundOff = report.IsFinal &&
         (report.Residual <= AnswerFactor * this->Limits.Tolerance ||
-          report.Residual <= LargestOfRoundOff * RoundOff(*this->Matrix, b, x, this->Parallel));
+          (report.Residual < 1.0 && report.Residual <= LargestOfRoundOff * this->RoundOff(b, x)));
       if (report.Converged || isRoundOff)
       {
         progress.Report(1.0);
@@ -225,6 +198,36 @@ SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMoni
   best.Iterations = iterations;
   best.IsFinal = true;
   return best;
+}
+
+/// What the last places of the entries of x leave of the residual, in the norm of
+/// SolveReport::Residual, of the column in which this is least. On needles it is above the
+/// tolerance.
+double FallBackSolver::RoundOff(const Values& b, const Values& x) const
+{
+  const SparseMatrix& matrix = *this->Matrix;
+  const auto n = static_cast<Index>(b.rows());
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index c = 0; c < b.cols(); ++c)
+  {
+    const double unit = ScaleOf(b, x, c, this->Parallel);
+    // (number / unit)^2 over the diagonal entry
+    const auto square = [&](Index i, double number)
+    { return number / unit / DiagonalEntry(matrix, i) * (number / unit); };
+    const double ofTerms = Sum(this->Parallel, n,
+      [&](Index i)
+      {
+        double terms = 0.0;
+        for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
+        {
+          terms += std::abs(matrix.valuePtr()[slot] * x(matrix.innerIndexPtr()[slot], c));
+        }
+        return square(i, terms);
+      });
+    const double ofB = Sum(this->Parallel, n, [&](Index i) { return square(i, b(i, c)); });
+    least = std::min(least, ofB > 0.0 ? ofTerms / ofB : 0.0);
+  }
+  return std::numeric_limits<double>::epsilon() * std::sqrt(least);
 }
 
 SolveReport FallBackSolver::TrySolve(std::size_t number, IterationLimits limits, bool isFallBack,

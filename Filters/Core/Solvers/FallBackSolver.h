@@ -56,6 +56,7 @@ private:
     return method == this->First && method != this->Factor && this->IsUndecided &&
       this->Patience > 0;
   }
+  double RoundOff(const Values& b, const Values& x) const;
   double ForecastOf(const SparseMatrix& matrix);
   void MeasureRows(const SparseMatrix& matrix);
   void Decide(std::size_t method, bool isGood);

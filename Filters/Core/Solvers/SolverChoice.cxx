@@ -31,9 +31,8 @@ constexpr double AnisotropicCycles = 0.2; // x min(anisotropy, c) to this power
 constexpr double SmallestDiffusionNumber = 1e-2; // below, nothing changes
 constexpr double SteadyState = 1e4; // the diffusion number that a steady state is as long as
 
-// Iterations run on all threads, of a factorisation only the numbers, which are the smaller part.
-// This is the share of the time on one thread that iterations take, relative to that of
-// factorisations, between one thread and two.
+// Iterations run on all threads, but of a factorisation only the numbers, its smaller part. This is
+// the time of iterations relative to that of factorisations, between one thread and two.
 constexpr double Threads = 0.85;
 // On meshes where conjugate gradients give up, multigrid takes the cycles of steps that are longer
 // by this factor.

@@ -18,8 +18,8 @@ enum class SolverMethod
   Multigrid
 };
 
-/// The largest number of vertices for which a factorisation is chosen: it takes 1 kB per vertex,
-/// and its time grows as the number of vertices to the power 1.35.
+/// The largest number of vertices for which a factorisation is chosen: it takes 0.5 kB per vertex,
+/// 1.2 kB while it is computed, and its time grows as the number of vertices to the power 1.35.
 constexpr Index LargestFactor = 800000;
 
 /// The linear systems a solver is made for, as far as the choice of the method depends on them.

@@ -42,18 +42,13 @@ struct SparseFactor::Decomposition : Eigen::SimplicialLDLT<SparseMatrix, Eigen::
   const SparseMatrix& L() const { return this->m_matrix; }
 };
 
-bool SparseFactor::HasPatternOf(const SparseMatrix& matrix) const
+bool SparseFactor::HasValuesOf(const SparseMatrix& matrix) const
 {
   return this->Matrix.rows() == matrix.rows() && this->Matrix.nonZeros() == matrix.nonZeros() &&
     std::equal(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.rows(),
       this->Matrix.outerIndexPtr()) &&
     std::equal(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros(),
-      this->Matrix.innerIndexPtr());
-}
-
-bool SparseFactor::HasValuesOf(const SparseMatrix& matrix) const
-{
-  return this->HasPatternOf(matrix) &&
+      this->Matrix.innerIndexPtr()) &&
     std::equal(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros(), this->Matrix.valuePtr());
 }
 
@@ -74,10 +69,10 @@ void SparseFactor::Compute(const ParallelFor& parallel, const ProgressMonitor& p
   this->InverseDiagonal = this->Matrix.diagonal().cwiseInverse();
   this->D.resize(matrix.rows());
   const PivotCounts pivots =
-    this->Numbers.Compute(matrix, IsRegular(matrix), resolved, parallel, progress.Part(0.0, 0.9));
+    this->Numbers.Compute(matrix, IsRegular(matrix), resolved, parallel, progress.Part(0.0, 0.8));
   if (pivots.Open == 0)
   {
-    this->TakeNumbers();
+    this->TakeNumbers(parallel, progress.Part(0.8, 1.0));
   }
   this->Numbers.DropEntries();
   if (pivots.Open > 0)
@@ -85,6 +80,7 @@ void SparseFactor::Compute(const ParallelFor& parallel, const ProgressMonitor& p
     Decomposition decomposition(matrix, this->Numbers.Structure().Place);
     for (const double diagonalFactor : { 1.0, 1.0 + resolved })
     {
+      progress.Report(0.8);
       decomposition.setShift(0.0, diagonalFactor);
       decomposition.factorize(matrix);
       this->Succeeded = decomposition.info() == Eigen::Success;
@@ -122,10 +118,10 @@ bool SparseFactor::HasPivotsAbove(double bound) const
 }
 
 /// D and L from the Cholesky factor.
-void SparseFactor::TakeNumbers()
+void SparseFactor::TakeNumbers(const ParallelFor& parallel, const ProgressMonitor& progress)
 {
+  constexpr Index reportInterval = 4096;
   const Supernodes& nodes = this->Numbers.Structure();
-  this->L.Clear(this->Numbers.Memory() / sizeof(double));
   for (Index s = 0; s < nodes.Count(); ++s)
   {
     for (Index p = 0; p < nodes.Pivots(s); ++p)
@@ -134,36 +130,58 @@ void SparseFactor::TakeNumbers()
       this->D[nodes.First[s] + p] = pivot * pivot;
     }
   }
+  this->L.Clear(static_cast<std::size_t>(Sum(parallel, nodes.Count(),
+    [&](Index s)
+    {
+      FactorPanels::Column column;
+      double kept = 0.0;
+      for (Index p = 0; p < nodes.Pivots(s); ++p)
+      {
+        this->CopyColumn(s, p, column);
+        kept += static_cast<double>(column.Rows.size());
+      }
+      return kept;
+    })));
   FactorPanels::Column column;
-  std::vector<double> entries;
   for (Index s = 0; s < nodes.Count(); ++s)
   {
-    const Index first = nodes.First[s];
-    const Index k = nodes.Pivots(s);
-    const Index height = k + nodes.RowsBelow(s);
-    const Index* const below = nodes.Below(s);
-    entries.resize(static_cast<std::size_t>(height));
-    for (Index p = 0; p < k; ++p)
+    if (s % reportInterval == 0)
     {
-      this->Numbers.CopyColumn(s, p, entries.data());
-      const double inversePivot = 1.0 / entries[p];
-      column.Rows.resize(entries.size());
-      column.Entries.resize(entries.size());
-      std::size_t kept = 0;
-      for (Index i = p + 1; i < height; ++i)
-      {
-        const Index row = i < k ? first + i : below[i - k];
-        column.Rows[kept] = row;
-        column.Entries[kept] = entries[i] * inversePivot;
-        kept += !IsNegligible(entries[i] * entries[i], this->D[row]);
-      }
-      column.Rows.resize(kept);
-      column.Entries.resize(kept);
+      progress.Report(static_cast<double>(s) / nodes.Count());
+    }
+    for (Index p = 0; p < nodes.Pivots(s); ++p)
+    {
+      this->CopyColumn(s, p, column);
       this->L.Append(column);
     }
   }
   this->L.Finish();
   this->Succeeded = true;
+}
+
+/// Of L, pivot p of supernode s, without negligible entries.
+void SparseFactor::CopyColumn(Index s, Index p, FactorPanels::Column& column) const
+{
+  const Supernodes& nodes = this->Numbers.Structure();
+  const Index first = nodes.First[s];
+  const Index k = nodes.Pivots(s);
+  const Index height = k + nodes.RowsBelow(s);
+  const Index* const below = nodes.Below(s);
+  column.Rows.resize(static_cast<std::size_t>(height));
+  column.Entries.resize(static_cast<std::size_t>(height));
+  this->Numbers.CopyColumn(s, p, column.Entries.data());
+  const double inversePivot = 1.0 / column.Entries[p];
+  std::size_t kept = 0; // never more than the entries that were read
+  for (Index i = p + 1; i < height; ++i)
+  {
+    const double entry = column.Entries[i];
+    const Index row = i < k ? first + i : below[i - k];
+    column.Rows[kept] = row;
+    column.Entries[kept] = entry * inversePivot;
+    kept += !IsNegligible(entry * entry, this->D[row]);
+  }
+  column.Rows.resize(kept);
+  column.Entries.resize(kept);
 }
 
 /// L from the columns of a matrix.

@@ -11,13 +11,13 @@ namespace SurfaceDiffusion
 {
 
 /// P A P^T = L D L^T for a symmetric positive definite matrix A, with a unit lower triangular
-/// matrix L, a diagonal matrix D and a permutation P. The numbers are those of SupernodalFactor, but
-/// for three things:
+/// matrix L, a diagonal matrix D and a permutation P. The numbers are those of SupernodalFactor,
+/// with three differences:
 /// - Zeros that A stores are left out if they are more than 5 %: Dirichlet conditions leave them
 ///   behind. The factor is then that of the free vertices alone.
 /// - Regularisation: if a pivot is not above 1e-14 of its diagonal entry, the numbers are those of
-///   Eigen::SimplicialLDLT in the same order, of A or, if pivots are not above that there, either, of
-///   A with its diagonal times 1 + 1e-14. At huge time steps the mean is lost in the last digits of
+///   Eigen::SimplicialLDLT in the same order: of A, or, if a pivot is too small there as well, of A
+///   with its diagonal times 1 + 1e-14. At huge time steps the mean is lost in the last digits of
 ///   the diagonal, and this rounds the diagonal up in these digits.
 /// - Entries of L are left out if |L_ij| sqrt(D_j) < 1e-16 sqrt(D_i), which is below the last place
 ///   of row i of the Cholesky factor.
@@ -25,9 +25,8 @@ class SparseFactor
 {
 public:
   /// Take a copy of the matrix. The ordering is kept from the matrix before, if that had the same
-  /// pattern.
+  /// pattern without the zeros that are left out.
   void SetMatrix(const SparseMatrix& matrix) { this->Matrix = matrix; }
-  bool HasPatternOf(const SparseMatrix& matrix) const;
   bool HasValuesOf(const SparseMatrix& matrix) const;
 
   /// Throws Aborted, after which Compute() has to be called again.
@@ -48,7 +47,8 @@ private:
   struct Decomposition;
 
   bool HasPivotsAbove(double bound) const;
-  void TakeNumbers();
+  void TakeNumbers(const ParallelFor& parallel, const ProgressMonitor& progress);
+  void CopyColumn(Index s, Index p, FactorPanels::Column& column) const;
   void TakeColumns(const SparseMatrix& l);
 
   SparseMatrix Matrix;

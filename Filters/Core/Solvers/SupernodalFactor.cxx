@@ -107,8 +107,10 @@ PivotCounts SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular
     smallest[nodes.Place[i]] = resolved * matrix.coeff(i, i);
   }
 
-  // Subtrees that are small parts of all run beside each other, and what is above them in order.
+  // Subtrees that are small parts of all run beside each other, in tasks of several if they are
+  // very small, and what is above them in order.
   constexpr double smallPart = 1.0 / 24.0;
+  constexpr double smallestTask = 1.0 / 384.0;
   const Index count = nodes.Count();
   std::vector<double> below = nodes.Operations;
   for (Index s = 0; s < count; ++s)
@@ -119,7 +121,13 @@ PivotCounts SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular
     }
   }
   const double all = std::accumulate(nodes.Operations.begin(), nodes.Operations.end(), 0.0);
-  std::vector<Index> subtrees, top;
+  struct Task
+  {
+    std::vector<Index> Roots;
+    double Operations = 0.0;
+  };
+  std::vector<Task> tasks;
+  std::vector<Index> top;
   for (Index s = 0; s < count; ++s)
   {
     const bool isSmall = below[s] <= smallPart * all;
@@ -130,7 +138,12 @@ PivotCounts SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular
     }
     else if (parent < 0 || below[parent] > smallPart * all)
     {
-      subtrees.push_back(s);
+      if (tasks.empty() || tasks.back().Operations > smallestTask * all)
+      {
+        tasks.emplace_back();
+      }
+      tasks.back().Roots.push_back(s);
+      tasks.back().Operations += below[s];
     }
   }
   std::vector<Update> updates(count);
@@ -139,23 +152,25 @@ PivotCounts SupernodalFactor::Compute(const SparseMatrix& matrix, bool isRegular
   const ProgressMonitor ofFactor = progress.Part(isKnown ? 0.0 : 0.5, 1.0);
   const auto report = [&] { ofFactor.Report(all > 0.0 ? std::min(1.0, done / all) : 1.0); };
   constexpr Index batch = 16;
-  const auto numberOfSubtrees = static_cast<Index>(subtrees.size());
-  for (Index begin = 0; begin < numberOfSubtrees; begin += batch)
+  const auto numberOfTasks = static_cast<Index>(tasks.size());
+  for (Index begin = 0; begin < numberOfTasks; begin += batch)
   {
     report();
-    const Index size = std::min(batch, numberOfSubtrees - begin);
+    const Index size = std::min(batch, numberOfTasks - begin);
     ForEachTask(parallel, size,
       [&](Index number)
       {
-        const Index root = subtrees[begin + number];
-        for (Index s = nodes.FirstDescendant[root]; s <= root; ++s)
+        for (const Index root : tasks[begin + number].Roots)
         {
-          this->FactorizeNode(matrix, smallest, s, updates, pivots[s], SerialFor());
+          for (Index s = nodes.FirstDescendant[root]; s <= root; ++s)
+          {
+            this->FactorizeNode(matrix, smallest, s, updates, pivots[s], SerialFor());
+          }
         }
       });
     for (Index number = begin; number < begin + size; ++number)
     {
-      done += below[subtrees[number]];
+      done += tasks[number].Operations;
     }
   }
   for (const Index s : top)

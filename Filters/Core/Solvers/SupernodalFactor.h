@@ -15,9 +15,9 @@ namespace SurfaceDiffusion
 {
 
 /// P A P^T = L L^T for a symmetric positive definite matrix A by the multifrontal method (I. Duff,
-/// J. Reid, ACM Trans. Math. Softw. 9, 1983) in dense tiles. All threads take part, and no bit depends
-/// on their number. SparseFactor has the same numbers in the order in which substitution of few
-/// columns reads them.
+/// J. Reid, ACM Trans. Math. Softw. 9, 1983) in dense tiles. All threads take part, and no bit
+/// depends on their number. SparseFactor has the same numbers in the order in which substitution of
+/// few columns reads them.
 class SupernodalFactor
 {
 public:

@@ -261,8 +261,8 @@ Supernodes::Supernodes(const SparseMatrix& matrix, std::vector<Index> order)
 
 Supernodes OrderedSupernodes(const SparseMatrix& matrix, bool isRegular)
 {
-  // Of second order, nested dissection takes about 20 n^1.5 operations on regular triangulations, and
-  // minimum degree from 10 n^1.5 on subdivided scans to 55 n^1.5 on icospheres.
+  // Of second order, nested dissection takes about 20 n^1.5 operations on regular triangulations,
+  // and minimum degree from 10 n^1.5 on subdivided scans to 55 n^1.5 on icospheres.
   constexpr double ofDissection = 20.0;
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, Index> degree;
   Eigen::AMDOrdering<Index>()(matrix, degree);

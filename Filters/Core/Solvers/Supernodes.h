@@ -40,7 +40,8 @@ struct Supernodes
 };
 
 /// An order of the rows with a sparse factor: by approximate minimum degree, or by nested
-/// dissection if the vertices of the mesh are regular and it takes fewer operations.
+/// dissection if it takes fewer operations. That is tried if the vertices of the mesh are regular
+/// and minimum degree takes more operations than 20 n^1.5.
 Supernodes OrderedSupernodes(const SparseMatrix& matrix, bool isRegular);
 
 } // namespace SurfaceDiffusion
