@@ -115,13 +115,13 @@ struct Table
   Line Factor{ "Factor", "x s^1.35" };
   Line Substitution{ "Substitution", "x s^1.4" };
   Line LocalSubstitution{ "LocalSubstitution", "x c^0.2 s: in short steps the factor is sparser" };
-  Line SingleIteration{ "SingleIteration", "x s" };
-  Line DoubleIteration{ "DoubleIteration", "x s" };
+  Line SingleIteration{ "SingleIteration", "x s^1.1" };
+  Line DoubleIteration{ "DoubleIteration", "x s^1.1" };
   Line Iterations{ "Iterations", "x digits c^0.4 s^0.1" };
   Line IterationsAcross{ "IterationsAcross",
     "x digits sqrt(n), at most: across the whole surface" };
   Line Hierarchy{ "Hierarchy", "x s" };
-  Line Cycle{ "Cycle", "x s" };
+  Line Cycle{ "Cycle", "x s^1.2" };
   Regression Cycles;
   Line SubstitutionColumn{ "SubstitutionColumn", "" };
   Line SingleIterationColumn{ "SingleIterationColumn", "" };
@@ -147,11 +147,11 @@ struct Table
     const Cost cost = Measure(system, SolverMethod::ConjugateGradient);
     if (c <= 100.0)
     {
-      this->SingleIteration.Add(cost.PerIteration(), s);
+      this->SingleIteration.Add(cost.PerIteration(), std::pow(s, 1.1));
       this->Iterations.Add(cost.Iterations, std::pow(c, 0.4) * std::pow(s, 0.1));
       return;
     }
-    this->DoubleIteration.Add(cost.PerIteration(), s);
+    this->DoubleIteration.Add(cost.PerIteration(), std::pow(s, 1.1));
     this->IterationsAcross.Add(cost.Iterations, std::sqrt(s * Size));
   }
 
@@ -159,7 +159,7 @@ struct Table
   {
     const Cost cost = Measure(system, SolverMethod::Multigrid);
     this->Hierarchy.Add(cost.SetUp, s);
-    this->Cycle.Add(cost.PerIteration(), s);
+    this->Cycle.Add(cost.PerIteration(), std::pow(s, 1.2));
     this->Cycles.Add(std::log10(c), cost.Iterations);
   }
 

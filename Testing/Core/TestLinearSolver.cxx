@@ -524,7 +524,8 @@ TEST(Automatic, ChoosesWhatTheMeasurementsFoundFaster)
   EXPECT_EQ(choice(178000, 100.0, 20), SolverMethod::Direct);
   EXPECT_EQ(choice(178000, 1e4, 1), SolverMethod::Multigrid);
   EXPECT_EQ(choice(711000, 0.1, 10), SolverMethod::ConjugateGradient);
-  EXPECT_EQ(choice(711000, 1e4, 10), SolverMethod::Multigrid);
+  EXPECT_EQ(choice(711000, 1e4, 3), SolverMethod::Multigrid);
+  EXPECT_EQ(choice(711000, 1e4, 10), SolverMethod::Direct);
   EXPECT_EQ(choice(711000, 1.0, 100), SolverMethod::Direct);
   EXPECT_EQ(choice(178000, 0.1, 10), SolverMethod::ConjugateGradient);
   EXPECT_EQ(choice(178000, 0.1, 100), SolverMethod::Direct);

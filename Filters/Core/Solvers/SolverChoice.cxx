@@ -97,7 +97,7 @@ public:
       this->Task.Tolerance >= Measured::SmallestToleranceOfLongSteps;
     const double iteration = isSingle ? SingleIteration * this->Columns(SingleIterationColumn)
                                       : DoubleIteration * this->Columns(DoubleIterationColumn);
-    return Measured::Threads * this->Task.NumberOfSolves * iteration * this->S;
+    return Measured::Threads * this->Task.NumberOfSolves * iteration * std::pow(this->S, 1.1);
   }
 
   /// Of multigrid. hardness: a factor on the diffusion number.
@@ -111,9 +111,9 @@ public:
   double Multigrid(double hardness = 1.0) const
   {
     using namespace SolverCosts;
-    return Measured::Threads * this->S *
-      (Hierarchy +
-        this->Columns(CycleColumn) * this->Task.NumberOfSolves * this->Cycles(hardness) * Cycle);
+    const double cycles = this->Task.NumberOfSolves * this->Cycles(hardness);
+    return Measured::Threads *
+      (Hierarchy * this->S + this->Columns(CycleColumn) * cycles * Cycle * std::pow(this->S, 1.2));
   }
 
 private:

@@ -15,14 +15,14 @@ constexpr double Substitution = 0.0018; // x s^1.4
 constexpr double LocalSubstitution = 0.0018; // x c^0.2 s: in short steps the factor is sparser
 
 // Of conjugate gradients with Jacobi
-constexpr double SingleIteration = 0.0001; // x s
-constexpr double DoubleIteration = 0.00019; // x s
+constexpr double SingleIteration = 0.0001; // x s^1.1
+constexpr double DoubleIteration = 0.00019; // x s^1.1
 constexpr double Iterations = 69; // x digits c^0.4 s^0.1
 constexpr double IterationsAcross = 5.8; // x digits sqrt(n), at most: across the whole surface
 
 // Of multigrid
 constexpr double Hierarchy = 0.025; // x s
-constexpr double Cycle = 0.0011; // x s
+constexpr double Cycle = 0.0011; // x s^1.2
 constexpr double Cycles = 9.4; // x digits, at c = 1
 constexpr double CyclesPerDecade = 1.6; // x digits log10(c)
 
