@@ -55,10 +55,14 @@ double LargestDistance(const Surface& a, const Surface& b)
 /// Of the mean edge length: the variation of normals is minimised in single precision.
 constexpr double Rounding = 1e-6;
 
+/// In units of the surface.
+double MeanEdgeLength(const TriangleMesh& mesh)
+{
+  return MeanEdge(mesh) * mesh.LengthUnit();
+}
 double MeanEdgeLength(const Surface& surface)
 {
-  const TriangleMesh mesh(surface.Vertices, surface.Faces);
-  return MeanEdge(mesh) * mesh.LengthUnit();
+  return MeanEdgeLength(TriangleMesh(surface.Vertices, surface.Faces));
 }
 
 /// A flat surface in the plane z = 0 with its faces.
@@ -194,11 +198,10 @@ TEST(SurfaceDenoising, RoughDetailsAreNoNoise)
 TEST(SurfaceDenoising, StepsEndBeforeTheyRemoveDetails)
 {
   const Surface waves = RoughWaves();
-  const TriangleMesh mesh(waves.Vertices, waves.Faces);
   for (const auto& [amount, largest] : { std::pair(0.1, 8.4), { 0.3, 11.9 } })
   {
     DenoisingSettings settings;
-    settings.NoiseLevel = amount * MeanEdge(mesh) * mesh.LengthUnit();
+    settings.NoiseLevel = amount * MeanEdgeLength(waves);
     settings.Type = SurfaceType::Organic;
     EXPECT_LT(MeanAngle(Denoised(NoisyAlongNormals(waves, amount), settings), waves), largest);
   }
@@ -213,7 +216,7 @@ Surface WithCorrelatedNoise(Surface s, double amount, double length)
 {
   const Surface white = NoisyAlongNormals(s, 1.0);
   const TriangleMesh mesh(s.Vertices, s.Faces);
-  const double h = MeanEdge(mesh) * mesh.LengthUnit();
+  const double h = MeanEdgeLength(mesh);
   Points offsets = white.Vertices - s.Vertices;
   for (int step = 0; step < std::lround(4.0 * length * length); ++step)
   {
@@ -265,7 +268,7 @@ TEST(SurfaceDenoising, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
   for (const Surface& surface : { LBlock(32), Torus(120, 60), Icosphere(5) })
   {
     const TriangleMesh mesh(surface.Vertices, surface.Faces);
-    const double h = MeanEdge(mesh) * mesh.LengthUnit();
+    const double h = MeanEdgeLength(mesh);
     for (const double length : { 1.5, 2.0, 3.0 })
     {
       const Surface noisy = WithCorrelatedNoise(surface, 0.3, length);
@@ -363,7 +366,7 @@ namespace
 Surface NoisyInAllDirections(Surface s, double amount)
 {
   const TriangleMesh mesh(s.Vertices, s.Faces);
-  const double deviation = amount * MeanEdge(mesh) * mesh.LengthUnit();
+  const double deviation = amount * MeanEdgeLength(mesh);
   for (Index i = 0; i < s.NumberOfVertices(); ++i)
   {
     for (int k = 0; k < 3; ++k)
@@ -404,7 +407,7 @@ TEST(SurfaceDenoising, DetailsOfFewTrianglesAreNoNoiseOfAGivenLevel)
     const Surface surface = RoughTorus(across);
     const TriangleMesh mesh(surface.Vertices, surface.Faces);
     DenoisingSettings settings;
-    settings.NoiseLevel = 0.1 * MeanEdge(mesh) * mesh.LengthUnit();
+    settings.NoiseLevel = 0.1 * MeanEdgeLength(mesh);
     settings.Type = SurfaceType::Organic;
     const Surface noisy = NoisyAlongNormals(surface, 0.1);
     DenoisingReport report;
@@ -421,7 +424,7 @@ TEST(SurfaceDenoising, SurfacesWithoutNoiseStay)
   {
     const Surface result = Denoised(surface);
     const TriangleMesh mesh(surface.Vertices, surface.Faces);
-    const double h = MeanEdge(mesh) * mesh.LengthUnit();
+    const double h = MeanEdgeLength(mesh);
     EXPECT_LT(LargestDistance(result, surface), 0.02 * h);
     EXPECT_LT(MeanAngle(result, surface), 0.5);
   }
@@ -436,7 +439,7 @@ TEST(SurfaceDenoising, NoiseOfVerticesIsEstimatedAndEdgesRaiseItLittle)
     {
       const Surface noisy = NoisyAlongNormals(surface, amount);
       const TriangleMesh clean(surface.Vertices, surface.Faces);
-      const double h = MeanEdge(clean) * clean.LengthUnit();
+      const double h = MeanEdgeLength(clean);
       const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
       const double estimate = EstimateVertexNoise(mesh, GatherVertices(mesh, noisy.Vertices));
       EXPECT_NEAR(estimate / (amount * h), 1.0, hasEdges ? 0.3 : 0.1);
@@ -820,7 +823,7 @@ TEST(SurfaceDenoising, BoundariesDoNotShrink)
   const Surface result = Denoised(noisy);
   EXPECT_LT(MeanAngle(result, flat), 1.0);
   const TriangleMesh mesh(flat.Vertices, flat.Faces);
-  const double h = MeanEdge(mesh) * mesh.LengthUnit();
+  const double h = MeanEdgeLength(mesh);
   for (Index i = 0; i < flat.NumberOfVertices(); ++i)
   {
     const Eigen::RowVector3d d = result.Vertices.row(i) - flat.Vertices.row(i);

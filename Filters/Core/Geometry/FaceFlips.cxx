@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -120,25 +121,16 @@ bool IsFlipped(const TriangleMesh& mesh, const Points& normals, const Points& po
 std::vector<Index> VerticesOfFlippedFaces(const TriangleMesh& mesh, const Points& normals,
   const Points& points, const ParallelFor& parallel)
 {
-  std::vector<std::vector<Index>> blocks(NumberOfBlocks(mesh.NumberOfTriangles()));
-  ForEachBlock(parallel, mesh.NumberOfTriangles(),
-    [&](Index block, Index begin, Index end)
+  IndexLists lists = MakeLists(mesh.NumberOfTriangles(), parallel,
+    [&](Index t, std::vector<Index>& vertices)
     {
-      for (Index t = begin; t < end; ++t)
+      for (int a = 0; a < 3 && IsFlipped(mesh, normals, points, t); ++a)
       {
-        for (int a = 0; a < 3 && IsFlipped(mesh, normals, points, t); ++a)
-        {
-          blocks[block].push_back(mesh.TriangleVertices()(t, a));
-        }
+        vertices.push_back(mesh.TriangleVertices()(t, a));
       }
     });
-  std::vector<Index> vertices;
-  for (const std::vector<Index>& block : blocks)
-  {
-    vertices.insert(vertices.end(), block.begin(), block.end());
-  }
-  SortUnique(vertices, 0);
-  return vertices;
+  SortUnique(lists.Entries, 0);
+  return std::move(lists.Entries);
 }
 
 } // namespace

@@ -35,10 +35,9 @@ struct Lists
   const float* Areas;
 };
 
-/// D x at edge e.
-inline Block DifferencesAt(const Edge& edge, const Block* x)
+/// v + D x at an edge.
+inline Block DifferencesAt(const Edge& edge, const Block* x, Block v = Block())
 {
-  Block v;
   AddDifferences(edge, 0, x[edge.Faces[0]], v);
   AddDifferences(edge, 1, x[edge.Faces[1]], v);
   return v;
@@ -52,11 +51,8 @@ SURFACEDIFFUSION_ANY_VECTORS void UpdateMultipliers(const Edge* edges, const Blo
   const auto second = static_cast<float>(settings.Second);
   for (Index e = begin; e < end; ++e)
   {
-    const Edge& edge = edges[e];
-    Block v = multipliers[e];
-    AddDifferences(edge, 0, state[edge.Faces[0]], v);
-    AddDifferences(edge, 1, state[edge.Faces[1]], v);
-    Shrink(edge, first, second, v);
+    Block v = DifferencesAt(edges[e], state, multipliers[e]);
+    Shrink(edges[e], first, second, v);
     multipliers[e] = v;
   }
 }

@@ -23,10 +23,8 @@ bool IsNegligible(double squaredEntry, double squaredDiagonal)
   return squaredEntry < lastPlace * lastPlace * squaredDiagonal;
 }
 
-} // namespace
-
 /// Eigen's decomposition, in an order that is given.
-struct SparseFactor::Decomposition : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>
+struct Decomposition : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower>
 {
   Decomposition(const SparseMatrix& matrix, const std::vector<Index>& places)
   {
@@ -41,6 +39,8 @@ struct SparseFactor::Decomposition : Eigen::SimplicialLDLT<SparseMatrix, Eigen::
 
   const SparseMatrix& L() const { return this->m_matrix; }
 };
+
+} // namespace
 
 bool SparseFactor::HasValuesOf(const SparseMatrix& matrix) const
 {
@@ -130,6 +130,8 @@ void SparseFactor::TakeNumbers(const ParallelFor& parallel, const ProgressMonito
       this->D[nodes.First[s] + p] = pivot * pivot;
     }
   }
+  // Entries are counted first: they are about half of the numbers, and a list that grows would take
+  // up to twice its memory.
   this->L.Clear(static_cast<std::size_t>(Sum(parallel, nodes.Count(),
     [&](Index s)
     {

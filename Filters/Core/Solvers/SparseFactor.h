@@ -44,8 +44,6 @@ public:
   FactorPanels L;
 
 private:
-  struct Decomposition;
-
   bool HasPivotsAbove(double bound) const;
   void TakeNumbers(const ParallelFor& parallel, const ProgressMonitor& progress);
   void CopyColumn(Index s, Index p, FactorPanels::Column& column) const;
