@@ -610,9 +610,10 @@ def denoise_mesh(
         sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2 + sum_i l_i (N_i . (x_i - x0_i))^2
 
     and a term that keeps tangential displacements small. All weights follow from the noise level: l_i
-    is proportional to the inverse of its square, and smaller for outliers. This ends, around each
-    point, where the displacements along the normals approach the whiteness of independent noise. On
-    CAD shapes the total generalised variation of the normals is minimised then (Liu, Li, Wang, Liu,
+    is proportional to the inverse of its square, and smaller for outliers. Steps end, around each
+    point, before the displacements along the normals are as white as independent noise, but only where
+    more steps would remove details: where the displacements were less white after all of them, these
+    are kept. On CAD shapes the total generalised variation of the normals is minimised then (Liu, Li, Wang, Liu,
     Chen, TVCG 28(12), 2022). A surface counts as CAD if the displacements are as white as independent
     noise after this. Otherwise it is organic, and the result before is kept: details were lost.
 

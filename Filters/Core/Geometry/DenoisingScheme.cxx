@@ -35,20 +35,25 @@ constexpr double MeanOfLocalSquares = 0.7785; ///< of noise alone, with that lim
 constexpr double LargestChange = 4.0;
 constexpr double SmallestFactor = 0.5;
 constexpr double LargestFactor = 100.0;
-/// Of the second stage: vertices move by their whole step up to this whiteness of the displacements
-/// around them, and no more from the other on. Between them is the least error, in normals, on
-/// surfaces of many kinds, since the noise that is left then weighs as much as the details that
-/// further steps would remove.
-constexpr double WhitenessOfWholeSteps = 0.55;
-constexpr double WhitenessOfNoSteps = 0.75;
+/// Limits of the whiteness of displacements: all of a step or a result up to the first, nothing from
+/// the second on.
+struct WhitenessLimits
+{
+  double All;
+  double Nothing;
+};
+/// Of careful steps: between them is the least error, in normals, on surfaces of many kinds, since
+/// the noise that is left then weighs as much as the details that further steps would remove.
+constexpr WhitenessLimits LimitsOfSteps = { 0.55, 0.75 };
+/// Of whole steps: after them, the displacements of smooth surfaces have 0.6 to 0.8, and those of
+/// surfaces with details 1 to 5.
+constexpr WhitenessLimits LimitsOfResult = { 0.85, 1.1 };
 /// Details of short wavelength leave displacements that are not alike at neighbours but larger than
-/// the noise: no steps from this mean square on, in squares of the noise. Impulsive noise, whose level
+/// the noise: nothing from this mean square on, in squares of the noise. Impulsive noise, whose level
 /// is that of fewer vertices, and noise that is underestimated have up to 2.
 constexpr double LargestMeanSquare = 3.0;
-/// Shares of steps are found again after so many iterations.
-constexpr int IterationsOfShares = 2;
-/// The second stage ends when steps are this small on average.
-constexpr double SmallestStep = 0.01;
+/// After so many iterations, the whiteness is measured once less, since steps become smaller.
+constexpr int IterationsPerPause = 4;
 
 /// The stages of a scheme.
 class Denoising
@@ -112,12 +117,17 @@ private:
     }
   }
 
-  /// The second stage.
+  /// The second stage. Careful steps end around each vertex before they remove details; whole ones
+  /// show whether there are any, and are kept where there are none.
   void FilterWithLinearFits(const ProgressMonitor& progress)
   {
     const NormalFilterSettings& filter = this->Scheme.LinearFilter;
     const int count = this->Scheme.LinearIterations;
+    const bool isCareful = this->Scheme.IsNoiseIndependent && count > 0;
+    Points careful = isCareful ? this->Moved : Points();
+    Points before;
     Vector shares;
+    int next = 0;
     for (int i = 0; i < count; ++i)
     {
       const ProgressMonitor part = this->Begin(progress, i, count);
@@ -125,19 +135,14 @@ private:
       {
         this->Geometry.MeasureWidths(this->Graph, this->Parallel);
       }
-      Points before;
-      if (this->Scheme.IsNoiseIndependent)
+      if (isCareful)
       {
-        if (i % IterationsOfShares == 0)
-        {
-          shares = this->SharesOfSteps();
-        }
-        if (shares.sum() <= SmallestStep * static_cast<double>(shares.size()))
-        {
-          progress.Report(1.0);
-          break;
-        }
         before = this->Moved;
+        if (i == next)
+        {
+          shares = this->Shares(LimitsOfSteps);
+          next = i + 1 + i / IterationsPerPause;
+        }
       }
       const Points guide =
         ReplaceUnsupportedNormals(this->Graph, this->Geometry, filter, this->Parallel);
@@ -145,12 +150,21 @@ private:
         FitLinearNormals(this->Graph, this->Geometry, guide, filter, this->Parallel);
       this->Step(this->LastNormals, this->Scheme.LinearFidelity, part);
       this->TurnFlippedFaces();
-      for (Index k = 0; k < static_cast<Index>(shares.size()); ++k)
+      for (Index k = 0; k < static_cast<Index>(careful.rows()); ++k)
       {
-        this->Moved.row(k) = before.row(k) + shares[k] * (this->Moved.row(k) - before.row(k));
+        careful.row(k) += shares[k] * (this->Moved.row(k) - before.row(k));
       }
     }
-    this->TurnFlippedFaces(); // those that shares of steps have left
+    if (isCareful)
+    {
+      this->Geometry.Measure(this->Graph.Mesh, this->Moved, this->Parallel);
+      shares = this->Shares(LimitsOfResult);
+      for (Index k = 0; k < static_cast<Index>(careful.rows()); ++k)
+      {
+        this->Moved.row(k) = careful.row(k) + shares[k] * (this->Moved.row(k) - careful.row(k));
+      }
+      this->TurnFlippedFaces();
+    }
   }
 
   /// Of the last normals, if there are any.
@@ -172,13 +186,13 @@ private:
     return part;
   }
 
-  /// Per vertex, by the whiteness of the displacements around it.
-  Vector SharesOfSteps() const
+  /// Per vertex, by the whiteness and the mean square of the displacements around it.
+  Vector Shares(const WhitenessLimits& limits) const
   {
     const Vector displacements = this->DisplacementsAlongNormals(this->Geometry.Normals);
     const Vector whiteness = this->Statistics.LocalWhiteness(displacements);
     const Vector squares = this->Statistics.LocalMeans(displacements.cwiseAbs2());
-    return ((WhitenessOfNoSteps - whiteness.array()) / (WhitenessOfNoSteps - WhitenessOfWholeSteps))
+    return ((limits.Nothing - whiteness.array()) / (limits.Nothing - limits.All))
       .cwiseMin(LargestMeanSquare - squares.array())
       .cwiseMax(0.0)
       .cwiseMin(1.0);

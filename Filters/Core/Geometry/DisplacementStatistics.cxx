@@ -13,7 +13,7 @@ namespace
 
 /// Of averaging over neighbours. Each spreads a value by about 0.65 edges along an axis, and the
 /// spread grows with their square root: R of fewer values would be too uncertain.
-constexpr int WhitenessSweeps = 32;
+constexpr int WhitenessSweeps = 64;
 constexpr int MeanSweeps = 8;
 
 } // namespace

@@ -34,7 +34,7 @@ public:
   /// The standard deviation of R for independent noise: sums share terms, so that there are as many
   /// independent ones as sums without a common term.
   double WhitenessDeviation() const;
-  /// Per vertex, R of the vertices around it, with weights that fall over about four edges; 0 where
+  /// Per vertex, R of the vertices around it, with weights that fall over about five edges; 0 where
   /// none has moved. Fixed ones count as neighbours that stay, so that steps beside them, which they
   /// guide, end later.
   Vector LocalWhiteness(const Vector& displacements) const;

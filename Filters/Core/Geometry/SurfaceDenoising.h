@@ -54,9 +54,10 @@ struct DenoisingReport
 /// per vertex, by local means of the squared displacements (G. Gilboa, N. Sochen, Y. Zeevi,
 /// Variational Denoising of Partly Textured Images by Spatially Varying Constraints, IEEE
 /// Transactions on Image Processing 15(8), 2006). And they should be as white (see
-/// DisplacementStatistics): the steps of the second iterations end where the displacements around a
-/// vertex have nearly that of independent noise, so that regions of fine details keep them, and others
-/// become smooth. They end as well where displacements have three times its variance.
+/// DisplacementStatistics). Around a vertex whose displacements remain less so, the second iterations
+/// have removed noise only, and their result is kept. Elsewhere they have removed details, and the
+/// result is that of steps which end before. It is so, too, where displacements have three times the
+/// variance of the noise.
 ///
 /// If the type is Automatic, the variation of normals is minimised, too, and its result is kept if
 /// the displacements are then as white as independent noise. Otherwise it has removed details, which
