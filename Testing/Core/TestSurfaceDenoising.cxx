@@ -302,6 +302,40 @@ TEST(SurfaceDenoising, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
   }
 }
 
+namespace
+{
+
+/// A torus of 192 x 96 points with regular waves, this many triangles long and half an edge high.
+Surface WavyTorus(int length)
+{
+  Surface wavy = Torus(192, 96);
+  const double height = 0.5 * MeanEdgeLength(wavy);
+  for (Index i = 0; i < wavy.NumberOfVertices(); ++i)
+  {
+    const Eigen::RowVector3d p = wavy.Vertices.row(i);
+    const Eigen::RowVector3d centre = 2.0 * Eigen::RowVector3d(p[0], p[1], 0.0).normalized();
+    const double around = std::atan2(p[1], p[0]);
+    const double across = std::atan2(p[2], std::hypot(p[0], p[1]) - 2.0);
+    wavy.Vertices.row(i) += height * std::cos(192.0 / length * around) *
+      std::cos(96.0 / length * across) * (p - centre).normalized();
+  }
+  return wavy;
+}
+
+} // namespace
+
+/// Waves of six triangles were taken for correlated noise.
+TEST(SurfaceDenoising, RegularWavesAreNoNoise)
+{
+  for (const int length : { 6, 8, 12, 16 })
+  {
+    const Surface wavy = WavyTorus(length);
+    EXPECT_EQ(LargestDistance(Denoised(wavy), wavy), 0.0) << length;
+    const Surface noisy = NoisyAlongNormals(wavy, 0.05);
+    EXPECT_LT(MeanAngle(Denoised(noisy), wavy), 1.1 * MeanAngle(noisy, wavy)) << length;
+  }
+}
+
 TEST(SurfaceDenoising, NeitherWhiteNoiseNorShapeIsCorrelatedNoise)
 {
   for (const Surface& surface :

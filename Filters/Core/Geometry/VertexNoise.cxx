@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace SurfaceDiffusion
 {
@@ -23,6 +24,9 @@ constexpr double LargestLeverage = 2.0;
 /// |x| for the standard deviation 1.
 constexpr double NoiseFraction = 0.3;
 constexpr double NoiseQuantile = 0.3853;
+/// The same for its largest values.
+constexpr double TailFraction = 0.95;
+constexpr double TailQuantile = 1.96;
 /// Of larger surfaces, every second, third, ... vertex is used: that many have a quantile within
 /// about 1 %.
 constexpr Index EnoughVertices = 20000;
@@ -36,6 +40,7 @@ constexpr Index FewestVertices = 3200; ///< four times those within sixteen ring
 constexpr double LeastGrowth = 1.3; ///< from two to four rings
 constexpr double LeastGrowthToLevel = 1.8; ///< the same, to a level that is given
 constexpr double LargestLateGrowth = 1.6; ///< from eight to sixteen rings
+constexpr double SmallestTail = 0.86; ///< of Gaussian noise, over sigma_r
 constexpr double SmallestCorrelated = 0.1; ///< in h
 constexpr double LargestCorrelated = 1.0; ///< in h
 constexpr double RadiusOfLength =
@@ -160,13 +165,22 @@ double StandardizedDistance(const Points& points, Index vertex, const VertexRang
   return determined ? distance / std::sqrt(1.0 + leverage) : -1.0;
 }
 
-/// The noise whose absolute standardised distances these are; negative ones are left out.
-double NoiseOf(std::vector<double>& distances)
+/// The standard deviation of normally distributed numbers whose absolute values these are, by their
+/// small and by their large ones.
+struct Deviation
+{
+  double Sigma;
+  double Tail;
+};
+
+/// Negative distances are left out.
+Deviation DeviationOf(std::vector<double>& distances)
 {
   distances.erase(std::remove_if(distances.begin(), distances.end(),
                     [](double distance) { return distance < 0.0; }),
     distances.end());
-  return QuantileOf(distances, NoiseFraction) / NoiseQuantile;
+  return { QuantileOf(distances, NoiseFraction) / NoiseQuantile,
+    QuantileOf(distances, TailFraction) / TailQuantile };
 }
 
 /// Every so many vertices are used to have about `enough` of them.
@@ -175,8 +189,8 @@ Index StrideFor(const TriangleMesh& mesh, Index enough)
   return std::max<Index>(1, mesh.NumberOfVertices() / enough);
 }
 
-/// sigma_r per number of rings in ascending `rings`, of every vertex with the stride.
-std::vector<double> MeasureDeviations(const TriangleMesh& mesh, const Points& points,
+/// Per number of rings in ascending `rings`: sigma_r, of every vertex with the stride.
+std::vector<Deviation> MeasureDeviations(const TriangleMesh& mesh, const Points& points,
   const std::vector<int>& rings, Index stride, const ParallelFor& parallel)
 {
   const Index count = mesh.NumberOfVertices() / stride;
@@ -199,10 +213,10 @@ std::vector<double> MeasureDeviations(const TriangleMesh& mesh, const Points& po
         }
       }
     });
-  std::vector<double> deviations;
+  std::vector<Deviation> deviations;
   for (std::vector<double>& values : distances)
   {
-    deviations.push_back(NoiseOf(values));
+    deviations.push_back(DeviationOf(values));
   }
   return deviations;
 }
@@ -224,10 +238,10 @@ double QuantileOf(std::vector<double>& values, double fraction)
 double EstimateVertexNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
-  const std::vector<double> deviations =
+  const std::vector<Deviation> deviations =
     MeasureDeviations(mesh, points, { 2, 3 }, StrideFor(mesh, EnoughVertices), parallel);
-  const double two = deviations[0];
-  const double three = std::max(two, deviations[1]);
+  const double two = deviations[0].Sigma;
+  const double three = std::max(two, deviations[1].Sigma);
   if (!(two > 0.0))
   {
     return 0.0;
@@ -248,8 +262,13 @@ CorrelatedNoise EstimateCorrelatedNoise(
     return CorrelatedNoise();
   }
   const std::vector<int> rings{ 2, 3, 4, 6, 8, 12, 16 };
-  const std::vector<double> deviations =
+  const std::vector<Deviation> measured =
     MeasureDeviations(mesh, points, rings, StrideFor(mesh, EnoughWideNeighbourhoods), parallel);
+  std::vector<double> deviations;
+  std::transform(measured.begin(), measured.end(), std::back_inserter(deviations),
+    [](const Deviation& deviation) { return deviation.Sigma; });
+  const bool hasTails = std::all_of(measured.begin() + 2, measured.begin() + 5,
+    [](const Deviation& deviation) { return deviation.Tail >= SmallestTail * deviation.Sigma; });
   const double h = mesh.MeanEdgeLength();
   if (given > 0.0 && given * given <= 2.0 * deviations[0] * deviations[0])
   {
@@ -257,8 +276,9 @@ CorrelatedNoise EstimateCorrelatedNoise(
   }
   const double growth = deviations[2] / deviations[0];
   const double last = deviations.back();
-  const bool hasLevel = growth > LeastGrowth && last < LargestLateGrowth * deviations[4] &&
-    last > SmallestCorrelated * h && last < LargestCorrelated * h;
+  const bool hasLevel = growth > LeastGrowth && hasTails &&
+    last < LargestLateGrowth * deviations[4] && last > SmallestCorrelated * h &&
+    last < LargestCorrelated * h;
   const bool reachesLevel = given > 0.0 && growth > LeastGrowthToLevel;
   if (!hasLevel && !reachesLevel)
   {
