@@ -179,6 +179,7 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
   options.MergeTolerance = settings.MergeTolerance;
   options.IntrinsicDelaunay = true;
+  options.Boundaries = BoundaryEdges::Keep; // no way leaves the surface
   if (!this->Prepare(drawn, settings, options, progress.Part(0.0, 0.2)))
   {
     return;

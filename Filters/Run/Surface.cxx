@@ -45,8 +45,8 @@ struct Construction
     this->Working = this->Input;
     if (options.IntrinsicDelaunay)
     {
-      this->Delaunay =
-        std::make_shared<IntrinsicDelaunay>(this->Input, parallel, progress.Part(0.5, 0.6));
+      this->Delaunay = std::make_shared<IntrinsicDelaunay>(
+        this->Input, parallel, progress.Part(0.5, 0.6), options.Boundaries);
       this->Working = this->Delaunay->Mesh();
     }
     this->Operators = std::make_shared<Assembler>(this->Working, parallel, progress.Part(0.6, 1.0));

@@ -35,6 +35,7 @@ struct SurfaceOptions
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
   bool IntrinsicDelaunay = false;
+  BoundaryEdges Boundaries = BoundaryEdges::Flip; ///< of the intrinsic Delaunay triangulation
   double LengthUnit = 0.0; ///< of the meshes; 0: chosen by the extent of the surface
 };
 

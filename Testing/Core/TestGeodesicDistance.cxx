@@ -56,7 +56,7 @@ Found Find(const Surface& s, const std::vector<Start>& starts,
   const auto inputVertex = mesh->InputVertex();
   if (delaunay)
   {
-    mesh = IntrinsicDelaunay(mesh).Mesh();
+    mesh = IntrinsicDelaunay(mesh, SerialFor(), ProgressMonitor(), BoundaryEdges::Keep).Mesh();
   }
   const GeodesicDistance fronts(mesh,
     ofMesh.empty() ? FrontShapes()
@@ -117,6 +117,33 @@ TEST(GeodesicDistance, InAPlaneIsExact)
   {
     const double exact = (irregular.Vertices.row(i) - irregular.Vertices.row(137)).norm();
     EXPECT_NEAR(found.Times[i], exact, 1e-3 * exact);
+  }
+}
+
+// No way is shorter than a straight line, although angles at the boundary are obtuse.
+TEST(GeodesicDistance, WaysInAPlaneDoNotLeaveIt)
+{
+  Surface slanted = Plate(12, 1.0);
+  slanted.Vertices.col(0) += 2.0 * slanted.Vertices.col(1);
+  const Surface triangles =
+    MakeSurface({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.2, 1, 0 }, { 0.4, 0.05, 0 } },
+      { { 0, 1, 3 }, { 1, 2, 3 }, { 2, 0, 3 } });
+  for (const Surface& s : { slanted, triangles })
+  {
+    for (Index source = 0; source < s.NumberOfVertices(); ++source)
+    {
+      const Found found = Find(s, { { source } }, {}, Never, true);
+      for (Index i = 0; i < s.NumberOfVertices(); ++i)
+      {
+        EXPECT_GE(found.Times[i], (s.Vertices.row(i) - s.Vertices.row(source)).norm() - 1e-12);
+      }
+    }
+  }
+  const Found found = Find(triangles, { { 3 } }, {}, Never, true);
+  for (Index i = 0; i < 3; ++i)
+  {
+    EXPECT_NEAR(
+      found.Times[i], (triangles.Vertices.row(i) - triangles.Vertices.row(3)).norm(), 1e-14);
   }
 }
 

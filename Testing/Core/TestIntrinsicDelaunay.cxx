@@ -226,6 +226,20 @@ TEST(IntrinsicDelaunay, EnergyOfALinearFunctionIsExactOnAPlane)
   EXPECT_NEAR(DirichletEnergy(*flipped, CotanWeights(*flipped), u), 0.5 * 5.0 * 4.0, 1e-9);
 }
 
+TEST(IntrinsicDelaunay, EnergyOfALinearFunctionIsExactIfBoundaryEdgesAreKept)
+{
+  const Surface plate = Slanted(Plate(12, 1.0), 6.0);
+  const auto energy = [&](BoundaryEdges boundary)
+  {
+    const auto flipped =
+      IntrinsicDelaunay(MakeMesh(plate), SerialFor(), ProgressMonitor(), boundary).Mesh();
+    const Values u = Sample(*flipped, plate, [](const auto& x) { return 2.0 * x[0] - x[1]; });
+    return DirichletEnergy(*flipped, CotanWeights(*flipped), u);
+  };
+  EXPECT_NEAR(energy(BoundaryEdges::Keep), 0.5 * 5.0 * 4.0, 1e-9);
+  EXPECT_GT(std::abs(energy(BoundaryEdges::Flip) - 10.0), 0.1);
+}
+
 TEST(IntrinsicDelaunay, TransportKeepsAConstantFieldOfAPlane)
 {
   const Surface plate = BadInside();

@@ -37,10 +37,10 @@ Tensor OnTheBack(const Tensor& front, const TriangleMesh::Shape& shape)
 } // namespace
 
 IntrinsicDelaunay::IntrinsicDelaunay(std::shared_ptr<const TriangleMesh> mesh,
-  const ParallelFor& parallel, const ProgressMonitor& progress)
+  const ParallelFor& parallel, const ProgressMonitor& progress, BoundaryEdges boundary)
   : Input(std::move(mesh))
 {
-  IntrinsicTriangulation triangulation(*this->Input, parallel);
+  IntrinsicTriangulation triangulation(*this->Input, boundary, parallel);
   this->FlipEdges(triangulation, parallel, progress);
   this->EdgeFlips.shrink_to_fit();
   this->EdgesLeft = static_cast<Index>(Sum(parallel, triangulation.NumberOfSides(),

@@ -22,7 +22,8 @@ class IntrinsicDelaunay
 public:
   /// Throws Aborted.
   explicit IntrinsicDelaunay(std::shared_ptr<const TriangleMesh> mesh,
-    const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+    const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor(),
+    BoundaryEdges boundary = BoundaryEdges::Flip);
 
   /// The number of edges that are not Delaunay: those of triangles too flat to be flipped, and
   /// those left when the flips were ended (50 checks per side of a triangle). The maximum principle

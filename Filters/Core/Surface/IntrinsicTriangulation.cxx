@@ -76,12 +76,16 @@ Index BackOf(Index side, Index triangleCount)
 } // namespace
 
 IntrinsicTriangulation::IntrinsicTriangulation(
-  const TriangleMesh& mesh, const ParallelFor& parallel)
+  const TriangleMesh& mesh, BoundaryEdges boundary, const ParallelFor& parallel)
 {
   const EdgeList edges = ListEdges(mesh, parallel);
   this->TwoSheets = !IsOneSheet(edges.Uses, parallel);
   this->MakeSheets(mesh, parallel);
   this->JoinSheets(edges, mesh.NumberOfTriangles(), parallel);
+  if (boundary == BoundaryEdges::Keep && this->TwoSheets)
+  {
+    this->KeepBoundaryEdges(mesh.NumberOfTriangles());
+  }
   this->Mollify(parallel);
 }
 
@@ -183,6 +187,20 @@ void IntrinsicTriangulation::JoinSheets(
     });
 }
 
+/// Those whose front and back are joined.
+void IntrinsicTriangulation::KeepBoundaryEdges(Index triangleCount)
+{
+  this->IsKept.assign(3 * this->Triangles.size(), 0);
+  for (Index side = 0; side < 3 * triangleCount; ++side)
+  {
+    const Index back = BackOf(side, triangleCount);
+    if (this->Twin(side) == back)
+    {
+      this->IsKept[side] = this->IsKept[back] = 1;
+    }
+  }
+}
+
 void IntrinsicTriangulation::Join(Index side, Index other)
 {
   this->Triangles[side / 3].Twins[side % 3] = other;
@@ -272,6 +290,10 @@ double IntrinsicTriangulation::Cotangent(Index side) const
 bool IntrinsicTriangulation::IsDelaunay(Index side) const
 {
   const Index twin = this->Twin(side);
+  if (!this->IsKept.empty() && this->IsKept[side])
+  {
+    return true;
+  }
   if (twin / 3 == side / 3)
   {
     return true; // a cone around one vertex: nothing to flip
@@ -335,6 +357,18 @@ void IntrinsicTriangulation::Relink(Index side, Index twin)
   };
   const std::array<Index, 4> twins{ moved(f.Twins[Last(a)]), moved(f.Twins[Next(a)]),
     moved(g.Twins[Last(b)]), moved(g.Twins[Next(b)]) };
+
+  if (!this->IsKept.empty())
+  {
+    std::array<char, 4> isKept;
+    std::transform(outer.begin(), outer.end(), isKept.begin(),
+      [&](const auto& places) { return this->IsKept[places.first]; });
+    for (int k = 0; k < 4; ++k)
+    {
+      this->IsKept[outer[k].second] = isKept[k];
+    }
+    this->IsKept[3 * first + 1] = this->IsKept[3 * second + 1] = 0;
+  }
 
   const Index A = f.Vertices[a];
   const Index P = f.Vertices[Next(a)];

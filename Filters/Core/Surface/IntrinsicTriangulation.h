@@ -11,6 +11,15 @@
 namespace SurfaceDiffusion
 {
 
+/// What becomes of boundary edges opposite an obtuse angle. Flipped over the boundary, to the back of
+/// their triangle, they leave no negative weight. But the new edge crosses the boundary, so that
+/// linear functions are no longer kept exactly beside it, and ways along edges may leave the surface.
+enum class BoundaryEdges
+{
+  Flip,
+  Keep
+};
+
 /// A triangulation of a surface by edge lengths and neighbours alone, whose edges can be flipped
 /// along geodesics: no vertex moves and the surface stays the same.
 ///
@@ -19,7 +28,7 @@ namespace SurfaceDiffusion
 /// around edges with more than two triangles (N. Sharp, K. Crane, "A Laplacian for Nonmanifold
 /// Triangle Meshes", SGP 2020), and each sheet counts with half the area. By symmetry nothing flows
 /// over a boundary then (the Neumann condition), and boundary edges flip like others, so that no
-/// vertex has to be added.
+/// vertex has to be added, unless they are to be kept.
 ///
 /// The edges of nearly degenerate triangles are first made longer, by about 1e-6 of the longest of
 /// their triangle, so that every triangle inequality holds in floating point (mollification, ibid.,
@@ -28,8 +37,8 @@ namespace SurfaceDiffusion
 class IntrinsicTriangulation
 {
 public:
-  explicit IntrinsicTriangulation(
-    const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
+  explicit IntrinsicTriangulation(const TriangleMesh& mesh,
+    BoundaryEdges boundary = BoundaryEdges::Flip, const ParallelFor& parallel = SerialFor());
 
   /// Side 3 t + a of triangle t is its edge opposite corner a, from corner a + 1 to corner a + 2.
   Index NumberOfSides() const { return 3 * static_cast<Index>(this->Triangles.size()); }
@@ -38,7 +47,7 @@ public:
   /// The vertex at corner a of triangle t.
   Index Vertex(Index t, int a) const { return this->Triangles[t].Vertices[a]; }
 
-  /// Whether the cotangents opposite the edge have a nonnegative sum, up to round-off.
+  /// Whether the cotangents opposite the edge have a nonnegative sum, up to round-off, or it is kept.
   bool IsDelaunay(Index side) const;
 
   /// A flip, with the rotations that carry tangent vectors over it. Angles are in radians from the
@@ -94,6 +103,7 @@ private:
   static bool IsOneSheet(const Buffer<EdgeUse>& uses, const ParallelFor& parallel);
   void MakeSheets(const TriangleMesh& mesh, const ParallelFor& parallel);
   void JoinSheets(const EdgeList& edges, Index triangleCount, const ParallelFor& parallel);
+  void KeepBoundaryEdges(Index triangleCount);
   void Join(Index side, Index other);
   void Mollify(const ParallelFor& parallel);
   double LackOfSlack(Index t, int a) const;
@@ -102,6 +112,7 @@ private:
 
   Buffer<Triangle> Triangles;
   bool TwoSheets = false;
+  std::vector<char> IsKept; ///< per side; empty: all may be flipped
 };
 
 } // namespace SurfaceDiffusion
