@@ -24,7 +24,7 @@ class Distances
 {
 public:
   explicit Distances(const Surface& s, double m = Step, const ParallelFor& parallel = SerialFor())
-    : Mesh(IntrinsicDelaunay(MakeMesh(s)).Mesh())
+    : Mesh(IntrinsicDelaunay(MakeMesh(s), parallel, ProgressMonitor(), BoundaryEdges::Keep).Mesh())
     , Heat(std::make_shared<const Assembler>(this->Mesh), m, parallel)
     , Points(s.NumberOfVertices())
     , VertexOf(static_cast<std::size_t>(s.NumberOfVertices()), -1)
@@ -88,6 +88,18 @@ Vector GreatCircles(const Surface& sphere, Index from)
 }
 
 } // namespace
+
+// The heat has no slope on the face opposite the source, and round-off no direction.
+TEST(HeatDistance, OnATetrahedronIsEqualAtTheOtherCorners)
+{
+  const Surface tetrahedron =
+    MakeSurface({ { 1, 1, 1 }, { 1, -1, -1 }, { -1, 1, -1 }, { -1, -1, 1 } },
+      { { 0, 2, 1 }, { 0, 1, 3 }, { 0, 3, 2 }, { 1, 2, 3 } });
+  const Vector found = Distances(tetrahedron).From(0);
+  EXPECT_GT(found[1], 1.0);
+  EXPECT_NEAR(found[2], found[1], 1e-9);
+  EXPECT_NEAR(found[3], found[1], 1e-9);
+}
 
 // Two refinements at least halve the error, and fronts are at least as near.
 TEST(HeatDistance, OnASphereConvergesToGreatCircles)

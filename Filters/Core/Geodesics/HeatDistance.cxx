@@ -28,8 +28,9 @@ constexpr std::size_t WidthOfPanel = 8;
 /// The unit vector along the gradient of the values at the corners; zero if there is none.
 Eigen::Vector2d UnitGradient(const TriangleMesh::Shape& s, const Eigen::Vector3d& u)
 {
+  constexpr double roundOff = 1e-12; // where values are equal but for it, it has the direction
   const double largest = u.cwiseAbs().maxCoeff();
-  if (!(largest > 0.0 && largest < Never))
+  if (!(largest < Never && u.maxCoeff() - u.minCoeff() > roundOff * largest))
   {
     return Eigen::Vector2d::Zero();
   }
