@@ -137,6 +137,42 @@ Surface Cap(int level, double radius)
 
 } // namespace
 
+/// Of half planes that meet in an edge, and of solids without other edges than sharp ones. Neighbours
+/// with normals at 60 degrees or more did not count, so that the sharpest ones were flat.
+TEST(Curvature, SharpEdgesAndCornersAreNotFlat)
+{
+  double last = 0.0;
+  for (const double degrees : { 110.0, 90.0, 70.0, 50.0, 30.0 })
+  {
+    const double half = 0.5 * degrees * Pi / 180.0;
+    Surface wedge = Plate(16, 1.0);
+    for (auto&& v : wedge.Vertices.rowwise())
+    {
+      const double x = v[0];
+      v[0] = -std::abs(x) * std::cos(half);
+      v[2] = x * std::sin(half);
+    }
+    const Result result = Estimate(wedge);
+    double least = std::numeric_limits<double>::infinity();
+    for (Index i = 0; i < result.Mesh().NumberOfVertices(); ++i)
+    {
+      const auto p = wedge.Vertices.row(result.InputVertex(i));
+      if (p[0] == 0.0 && std::abs(p[1]) < 0.9)
+      {
+        least = std::min(least, std::abs(result.Found.Mean[i]));
+      }
+    }
+    EXPECT_GT(least, 1.2 * last) << degrees;
+    last = least;
+  }
+  for (const Surface& solid : { Tetrahedron(), Icosphere(0) })
+  {
+    const Result result = Estimate(solid);
+    EXPECT_GT(result.Found.Mean.cwiseAbs().minCoeff(), 0.5);
+    EXPECT_LT(result.Found.Mean.cwiseAbs().maxCoeff(), 4.0);
+  }
+}
+
 TEST(Curvature, HasOrderTwoOnATorus)
 {
   const TorusErrors coarse = ErrorsOnTorus(Torus(60, 30));

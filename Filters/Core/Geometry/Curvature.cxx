@@ -29,10 +29,18 @@ Eigen::Matrix<double, 3, 2> TangentAxes(const Eigen::Vector3d& normal)
   return axes;
 }
 
-/// The vertices at most two edges from a vertex, without itself, ascending. The search does not
-/// pass vertices of many triangles, such as the middle of a disc that is cut into slices.
-void FindDisk(const TriangleMesh& mesh, Index centre, std::vector<Index>& disk)
+/// Vertices around a vertex, without itself, ascending.
+struct Disk
 {
+  std::vector<Index> Ring; ///< one edge from it
+  std::vector<Index> All; ///< at most two edges from it
+};
+
+/// The search does not pass vertices of many triangles, such as the middle of a disc that is cut into
+/// slices.
+void FindDisk(const TriangleMesh& mesh, Index centre, Disk& found)
+{
+  std::vector<Index>& disk = found.All;
   constexpr Index manyTriangles = 32;
   const auto addNeighbours = [&](Index i)
   {
@@ -47,11 +55,11 @@ void FindDisk(const TriangleMesh& mesh, Index centre, std::vector<Index>& disk)
   disk.clear();
   addNeighbours(centre);
   SortUnique(disk, 0);
-  const std::size_t ring = disk.size();
-  for (std::size_t k = 0; k < ring && ring <= static_cast<std::size_t>(manyTriangles); ++k)
+  found.Ring = disk;
+  for (const Index i : found.Ring)
   {
-    const Index i = disk[k];
-    if (mesh.VertexCornersBegin()[i + 1] - mesh.VertexCornersBegin()[i] <= manyTriangles)
+    if (found.Ring.size() <= static_cast<std::size_t>(manyTriangles) &&
+      mesh.VertexCornersBegin()[i + 1] - mesh.VertexCornersBegin()[i] <= manyTriangles)
     {
       addNeighbours(i);
     }
@@ -72,8 +80,7 @@ struct LocalShape
   double Gaussian = 0.0;
 };
 
-LocalShape FitPolynomial(
-  const Points& positions, const Points& normals, Index i, const std::vector<Index>& disk)
+LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i, const Disk& disk)
 {
   constexpr double steepest = 0.5; // the cosine of the largest angle of normals
   const Eigen::Vector3d normal = normals.row(i).transpose();
@@ -83,13 +90,14 @@ LocalShape FitPolynomial(
     return found;
   }
   const auto axes = TangentAxes(normal);
-  Eigen::Matrix<double, Eigen::Dynamic, 5> rows(static_cast<Eigen::Index>(disk.size()), 5);
+  Eigen::Matrix<double, Eigen::Dynamic, 5> rows(static_cast<Eigen::Index>(disk.All.size()), 5);
   Vector heights(rows.rows());
   double radius = 0.0;
   Eigen::Index count = 0;
-  for (const Index j : disk)
+  for (const Index j : disk.All)
   {
-    if (normals.row(j).dot(normals.row(i)) > steepest)
+    if (normals.row(j).dot(normals.row(i)) > steepest ||
+      std::binary_search(disk.Ring.begin(), disk.Ring.end(), j))
     {
       const Eigen::Vector3d d = (positions.row(j) - positions.row(i)).transpose();
       rows.row(count).head<2>() = d.transpose() * axes;
@@ -137,7 +145,7 @@ void FitEach(const TriangleMesh& mesh, const Points& positions, const Points& no
     ForEachBlock(parallel, last - first,
       [&](Index, Index begin, Index end)
       {
-        std::vector<Index> disk;
+        Disk disk;
         for (Index i = first + begin; i < first + end; ++i)
         {
           FindDisk(mesh, i, disk);
