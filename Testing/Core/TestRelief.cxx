@@ -98,6 +98,26 @@ TEST(Relief, OfConstantHeightOnABoxIsABox)
   }
 }
 
+/// Merging leaves triangles of two points, as many as there were edges without length.
+TEST(Relief, CollapsedTrianglesHaveNoEdges)
+{
+  const Surface box = Refined(Box(20.0, 30.0, 10.0), 3.0);
+  Surface merged = box;
+  merged.Faces.conservativeResize(merged.Faces.rows() + 20, 3);
+  for (Index t = 0; t < 20; ++t)
+  {
+    merged.Faces.row(box.Faces.rows() + t) << box.Faces(7 * t, 0), box.Faces(7 * t, 1),
+      box.Faces(7 * t, 0);
+  }
+  const Vector heights = Vector::Constant(box.NumberOfVertices(), 0.5);
+  const Relief expected = MakeRelief(box.Vertices, box.Faces, heights);
+  const Relief relief = MakeRelief(merged.Vertices, merged.Faces, heights);
+  EXPECT_EQ(0, relief.NonManifoldEdges);
+  EXPECT_EQ(0, relief.OpenEdges);
+  EXPECT_EQ(0, relief.LoweredVertices);
+  EXPECT_LT((relief.Places - expected.Places).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(Relief, ChangesTheVolumeByItsIntegral)
 {
   const std::vector<std::pair<const char*, Surface>> parts = { { "cube", Cube(40.0) },

@@ -27,7 +27,8 @@ OrientedNormals FindOrientedNormals(
     });
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    normals.TurnedTriangles += drawn(t, 1) != oriented(t, 1) ? 1 : 0;
+    normals.TurnedTriangles +=
+      drawn(t, 1) != oriented(t, 1) && HasOrientation(positions, drawn, t) ? 1 : 0;
   }
   normals.OfVertices.resize(mesh.NumberOfVertices(), 3);
   ForEach(parallel, mesh.NumberOfVertices(),

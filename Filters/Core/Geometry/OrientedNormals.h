@@ -12,7 +12,7 @@ struct OrientedNormals
 {
   Points OfTriangles; ///< unit vectors, with one orientation where the surface has two sides
   Points OfVertices; ///< the directions of their means weighted by area; 0 if that is 0
-  Index TurnedTriangles = 0; ///< those whose own orientation is the opposite one
+  Index TurnedTriangles = 0; ///< those with an orientation that is the opposite one
 };
 
 /// positions: per vertex of the mesh, in LengthUnit().

@@ -50,7 +50,7 @@ Neighbours FindNeighbours(const Triangles& triangles)
   sides.reserve(3 * static_cast<std::size_t>(triangles.rows()));
   for (Index t = 0; t < static_cast<Index>(triangles.rows()); ++t)
   {
-    for (int a = 0; a < 3; ++a)
+    for (int a = 0; a < 3 && !IsCollapsed(triangles, t); ++a)
     {
       const Index from = triangles(t, a);
       const Index to = triangles(t, (a + 1) % 3);
@@ -75,6 +75,8 @@ Neighbours FindNeighbours(const Triangles& triangles)
   return neighbours;
 }
 
+constexpr double SmallestHeight = 1e-6; ///< over the longest side of a triangle with an orientation
+
 double Area(const Points& points, const Triangles& triangles, Index t)
 {
   const Eigen::RowVector3d a = points.row(triangles(t, 0));
@@ -83,48 +85,105 @@ double Area(const Points& points, const Triangles& triangles, Index t)
   return 0.5 * (b - a).cross(c - a).norm();
 }
 
+enum class Turn : char
+{
+  Unknown,
+  Kept,
+  Turned
+};
+
+/// That of the neighbour of a triangle with this turn.
+Turn TurnBeside(Turn turn, const Neighbour& neighbour)
+{
+  return (turn == Turn::Kept) == neighbour.IsOpposite ? Turn::Turned : Turn::Kept;
+}
+
+/// Decides the triangles that those of `patch` connect, if `takes` accepts them, and appends these.
+template <typename Takes>
+void Follow(const Neighbours& neighbours, const Takes& takes, std::vector<Turn>& turns,
+  std::vector<Index>& patch)
+{
+  for (std::size_t next = 0; next < patch.size(); ++next)
+  {
+    for (const Neighbour& neighbour : neighbours[patch[next]])
+    {
+      const Index t = neighbour.Triangle;
+      if (t >= 0 && turns[t] == Turn::Unknown && takes(t))
+      {
+        turns[t] = TurnBeside(turns[patch[next]], neighbour);
+        patch.push_back(t);
+      }
+    }
+  }
+}
+
 } // namespace
+
+bool IsCollapsed(const Triangles& triangles, Index t)
+{
+  return triangles(t, 0) == triangles(t, 1) || triangles(t, 1) == triangles(t, 2) ||
+    triangles(t, 2) == triangles(t, 0);
+}
+
+bool HasOrientation(const Points& points, const Triangles& triangles, Index t)
+{
+  double longest = 0.0; // squared
+  for (int a = 0; a < 3; ++a)
+  {
+    longest = std::max(
+      longest, (points.row(triangles(t, a)) - points.row(triangles(t, (a + 1) % 3))).squaredNorm());
+  }
+  return 2.0 * Area(points, triangles, t) > SmallestHeight * longest;
+}
 
 void OrientTriangles(const Points& points, Triangles& triangles)
 {
   const Neighbours neighbours = FindNeighbours(triangles);
-  enum : char
+  std::vector<Turn> turns(neighbours.size(), Turn::Unknown);
+  std::vector<char> isOriented(neighbours.size());
+  for (Index t = 0; t < static_cast<Index>(triangles.rows()); ++t)
   {
-    Unknown,
-    Kept,
-    Turned
-  };
-  std::vector<char> side(neighbours.size(), Unknown);
+    isOriented[t] = HasOrientation(points, triangles, t);
+  }
   std::vector<Index> patch;
   for (Index seed = 0; seed < static_cast<Index>(triangles.rows()); ++seed)
   {
-    if (side[seed] != Unknown)
+    if (!isOriented[seed] || turns[seed] != Turn::Unknown)
     {
       continue;
     }
-    side[seed] = Kept;
+    turns[seed] = Turn::Kept;
     patch.assign(1, seed);
+    Follow(
+      neighbours, [&](Index t) { return isOriented[t] != 0; }, turns, patch);
     double keptArea = 0.0; // less the area of turned triangles
-    for (std::size_t next = 0; next < patch.size(); ++next)
-    {
-      const Index t = patch[next];
-      keptArea += (side[t] == Kept ? 1.0 : -1.0) * Area(points, triangles, t);
-      for (const Neighbour& neighbour : neighbours[t])
-      {
-        if (neighbour.Triangle >= 0 && side[neighbour.Triangle] == Unknown)
-        {
-          side[neighbour.Triangle] = (side[t] == Kept) == neighbour.IsOpposite ? Turned : Kept;
-          patch.push_back(neighbour.Triangle);
-        }
-      }
-    }
-    const char turned = keptArea < 0.0 ? Kept : Turned;
     for (const Index t : patch)
     {
-      if (side[t] == turned)
+      keptArea += (turns[t] == Turn::Kept ? 1.0 : -1.0) * Area(points, triangles, t);
+    }
+    if (keptArea < 0.0)
+    {
+      for (const Index t : patch)
       {
-        std::swap(triangles(t, 1), triangles(t, 2));
+        turns[t] = turns[t] == Turn::Kept ? Turn::Turned : Turn::Kept;
       }
+    }
+  }
+  patch.clear();
+  for (Index t = 0; t < static_cast<Index>(triangles.rows()); ++t)
+  {
+    if (isOriented[t])
+    {
+      patch.push_back(t);
+    }
+  }
+  Follow(
+    neighbours, [](Index) { return true; }, turns, patch);
+  for (Index t = 0; t < static_cast<Index>(triangles.rows()); ++t)
+  {
+    if (turns[t] == Turn::Turned)
+    {
+      std::swap(triangles(t, 1), triangles(t, 2));
     }
   }
 }

@@ -12,7 +12,17 @@ namespace SurfaceDiffusion
 /// has. On surfaces with one side only, such as a Moebius strip, edges with opposite orientations
 /// remain. A triangle is turned by an exchange of its second and third corner.
 ///
+/// Triangles without orientation, whose corners are on a line up to round-off of single precision,
+/// connect no others, and follow their neighbours: such triangles join the seams of many parametric
+/// surfaces, with orientations at random.
+///
 /// points: rows that the triangles refer to.
 void OrientTriangles(const Points& points, Triangles& triangles);
+
+/// Whether two corners of triangle t are one point, as merging leaves it: it has no edges.
+bool IsCollapsed(const Triangles& triangles, Index t);
+
+/// Whether the height of triangle t over its longest side is more than 1e-6 of that.
+bool HasOrientation(const Points& points, const Triangles& triangles, Index t);
 
 } // namespace SurfaceDiffusion
