@@ -107,6 +107,51 @@ private:
   std::vector<double> Weights;
 };
 
+/// Of merged points, those with the values and the weight of an earlier one are copies of it: what was
+/// measured once may be stored with every triangle.
+class FirstCopies
+{
+public:
+  FirstCopies(const Surface& surface, const Fields& fields)
+    : Domain(surface)
+    , Given(fields)
+    , Last(static_cast<std::size_t>(surface.Mesh().NumberOfVertices()), -1)
+  {
+  }
+
+  /// To be called once for each point, in ascending order.
+  bool IsFirst(std::size_t point)
+  {
+    Index& last =
+      this->Last[static_cast<std::size_t>(this->Domain.VertexOf(static_cast<Index>(point)))];
+    this->Before.resize(std::max(this->Before.size(), point + 1), -1);
+    this->Before[point] = last;
+    for (Index other = last; other >= 0; other = this->Before[static_cast<std::size_t>(other)])
+    {
+      if (this->AreEqual(static_cast<std::size_t>(other), point))
+      {
+        return false;
+      }
+    }
+    last = static_cast<Index>(point);
+    return true;
+  }
+
+private:
+  bool AreEqual(std::size_t i, std::size_t j) const
+  {
+    const Values& rows = this->Given.Data.Values;
+    const std::vector<double>& weights = this->Given.FidelityFactors.Values;
+    return rows.row(static_cast<Eigen::Index>(i)) == rows.row(static_cast<Eigen::Index>(j)) &&
+      (weights.empty() || weights[i] == weights[j]);
+  }
+
+  const Surface& Domain;
+  const Fields& Given;
+  std::vector<Index> Last; ///< per vertex: the last of its points that is no copy
+  std::vector<Index> Before; ///< per point: that before it at the same vertex
+};
+
 /// The middle of the largest triangle of each cell, of the first one among triangles of equal size,
 /// as those of a square; the vertices of cells without one are -1.
 std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& fields)
@@ -250,6 +295,7 @@ KnownValues FindKnownValues(
   const Vector ofVertices = factorsOfPoints ? MakeFidelityFactors(surface, fields) : Vector();
   const std::vector<SurfacePoint> middles =
     fields.Data.OnCells ? MiddlesOfCells(surface, fields) : std::vector<SurfacePoint>();
+  FirstCopies copies(surface, fields);
   for (std::size_t i = 0; i < static_cast<std::size_t>(fields.Data.Values.rows()); ++i)
   {
     const auto row = static_cast<Eigen::Index>(i);
@@ -266,7 +312,8 @@ KnownValues FindKnownValues(
           ? (ofVertices[corners[0]] + ofVertices[corners[1]] + ofVertices[corners[2]]) / 3.0
           : collector.WeightOf(i));
     }
-    else if (!fields.Data.OnCells && surface.VertexOf(static_cast<Index>(i)) >= 0)
+    else if (!fields.Data.OnCells && surface.VertexOf(static_cast<Index>(i)) >= 0 &&
+      copies.IsFirst(i))
     {
       collector.Add(SurfacePoint::AtVertex(surface.VertexOf(static_cast<Index>(i))), row,
         collector.WeightOf(i));
