@@ -52,7 +52,8 @@ constexpr WhitenessLimits LimitsOfResult = { 0.85, 1.1 };
 /// the noise: nothing from this mean square on, in squares of the noise. Impulsive noise, whose level
 /// is that of fewer vertices, and noise that is underestimated have up to 2.
 constexpr double LargestMeanSquare = 3.0;
-/// After so many iterations, the whiteness is measured once less, since steps become smaller.
+/// The pauses between measurements of the whiteness grow by one iteration after so many, since steps
+/// become smaller.
 constexpr int IterationsPerPause = 4;
 
 /// The stages of a scheme.
@@ -121,7 +122,6 @@ private:
   /// show whether there are any, and are kept where there are none.
   void FilterWithLinearFits(const ProgressMonitor& progress)
   {
-    const NormalFilterSettings& filter = this->Scheme.LinearFilter;
     const int count = this->Scheme.LinearIterations;
     const bool isCareful = this->Scheme.IsNoiseIndependent && count > 0;
     Points careful = isCareful ? this->Moved : Points();
@@ -140,41 +140,51 @@ private:
         before = this->Moved;
         if (i == next)
         {
-          shares = this->Shares(LimitsOfSteps);
+          shares = this->Shares(LimitsOfSteps, careful);
           next = i + 1 + i / IterationsPerPause;
         }
       }
-      const Points guide =
-        ReplaceUnsupportedNormals(this->Graph, this->Geometry, filter, this->Parallel);
-      this->LastNormals =
-        FitLinearNormals(this->Graph, this->Geometry, guide, filter, this->Parallel);
+      this->FitNormals();
       this->Step(this->LastNormals, this->Scheme.LinearFidelity, part);
-      this->TurnFlippedFaces();
-      for (Index k = 0; k < static_cast<Index>(careful.rows()); ++k)
+      this->TurnFlippedFaces(this->Moved);
+      if (isCareful)
       {
-        careful.row(k) += shares[k] * (this->Moved.row(k) - before.row(k));
+        for (Index k = 0; k < static_cast<Index>(careful.rows()); ++k)
+        {
+          careful.row(k) += shares[k] * (this->Moved.row(k) - before.row(k));
+        }
+        this->TurnFlippedFaces(careful);
       }
     }
     if (isCareful)
     {
       this->Geometry.Measure(this->Graph.Mesh, this->Moved, this->Parallel);
-      shares = this->Shares(LimitsOfResult);
+      shares = this->Shares(LimitsOfResult, this->Moved);
       for (Index k = 0; k < static_cast<Index>(careful.rows()); ++k)
       {
         this->Moved.row(k) = careful.row(k) + shares[k] * (this->Moved.row(k) - careful.row(k));
       }
-      this->TurnFlippedFaces();
+      this->Geometry.Measure(this->Graph.Mesh, this->Moved, this->Parallel);
+      this->FitNormals();
+      this->TurnFlippedFaces(this->Moved);
     }
   }
 
-  /// Of the last normals, if there are any.
-  void TurnFlippedFaces()
+  /// The last normals: linear fits to those of the present surface.
+  void FitNormals()
   {
-    if (this->LastNormals.rows() > 0)
-    {
-      SurfaceDiffusion::TurnFlippedFaces(
-        this->Graph.Mesh, this->LastNormals, this->Fixed, this->Moved, this->Parallel);
-    }
+    const NormalFilterSettings& filter = this->Scheme.LinearFilter;
+    const Points guide =
+      ReplaceUnsupportedNormals(this->Graph, this->Geometry, filter, this->Parallel);
+    this->LastNormals =
+      FitLinearNormals(this->Graph, this->Geometry, guide, filter, this->Parallel);
+  }
+
+  /// By the last normals.
+  void TurnFlippedFaces(Points& points) const
+  {
+    SurfaceDiffusion::TurnFlippedFaces(
+      this->Graph.Mesh, this->LastNormals, this->Fixed, points, this->Parallel);
   }
 
   /// Measure the present surface for iteration i. Returns its part of the progress.
@@ -186,12 +196,14 @@ private:
     return part;
   }
 
-  /// Per vertex, by the whiteness and the mean square of the displacements around it.
-  Vector Shares(const WhitenessLimits& limits) const
+  /// Per vertex, by the whiteness of the displacements of the present surface, and by the mean square
+  /// of those of `points`, around it.
+  Vector Shares(const WhitenessLimits& limits, const Points& points) const
   {
-    const Vector displacements = this->DisplacementsAlongNormals(this->Geometry.Normals);
-    const Vector whiteness = this->Statistics.LocalWhiteness(displacements);
-    const Vector squares = this->Statistics.LocalMeans(displacements.cwiseAbs2());
+    const Vector whiteness = this->Statistics.LocalWhiteness(
+      this->DisplacementsAlongNormals(this->Moved, this->Geometry.Normals));
+    const Vector squares = this->Statistics.LocalMeans(
+      this->DisplacementsAlongNormals(points, this->Geometry.Normals).cwiseAbs2());
     return ((limits.Nothing - whiteness.array()) / (limits.Nothing - limits.All))
       .cwiseMin(LargestMeanSquare - squares.array())
       .cwiseMax(0.0)
@@ -229,7 +241,7 @@ private:
       const double relative = this->RelativePrecision();
       this->Fit(this->LastNormals, scheme.VariationFidelity * relative * relative,
         scheme.VariationTangentialFidelity, scheme.VariationFitIterations, part.Part(0.8, 1.0));
-      this->TurnFlippedFaces();
+      this->TurnFlippedFaces(this->Moved);
     }
   }
 
@@ -239,12 +251,12 @@ private:
     this->Fit(this->LastNormals,
       std::min(relative, relative * relative) * this->Scheme.FinalFidelity,
       this->Scheme.VariationTangentialFidelity, this->Scheme.FinalFitIterations, progress);
-    this->TurnFlippedFaces();
+    this->TurnFlippedFaces(this->Moved);
   }
 
   bool LeavesOnlyNoise() const
   {
-    const Vector displacements = this->DisplacementsAlongNormals(this->LastNormals);
+    const Vector displacements = this->DisplacementsAlongNormals(this->Moved, this->LastNormals);
     return displacements.squaredNorm() <=
       LargestMeanSquare * static_cast<double>(displacements.size()) &&
       this->Statistics.Whiteness(displacements) <=
@@ -252,7 +264,7 @@ private:
   }
 
   /// Per vertex, in standard deviations of the noise, without outliers.
-  Vector DisplacementsAlongNormals(const Points& normals) const
+  Vector DisplacementsAlongNormals(const Points& points, const Points& normals) const
   {
     const TriangleMesh& mesh = this->Graph.Mesh;
     Vector displacements(mesh.NumberOfVertices());
@@ -265,9 +277,8 @@ private:
           normal += normals.row(mesh.VertexCorners()[k] / 3);
         }
         normal.normalize();
-        displacements[i] =
-          std::clamp(normal.dot(this->Moved.row(i) - this->Given.row(i)) / this->Noise,
-            -LargestDisplacement, LargestDisplacement);
+        displacements[i] = std::clamp(normal.dot(points.row(i) - this->Given.row(i)) / this->Noise,
+          -LargestDisplacement, LargestDisplacement);
       });
     return displacements;
   }
@@ -302,11 +313,12 @@ private:
 
   void AdaptFidelity(const Points& normals)
   {
-    const Vector squares = this->Statistics.LocalMeans(this->DisplacementsAlongNormals(normals)
-                                                         .cwiseAbs()
-                                                         .cwiseMin(LargestLocalDisplacement)
-                                                         .cwiseAbs2() /
-      MeanOfLocalSquares);
+    const Vector squares =
+      this->Statistics.LocalMeans(this->DisplacementsAlongNormals(this->Moved, normals)
+                                    .cwiseAbs()
+                                    .cwiseMin(LargestLocalDisplacement)
+                                    .cwiseAbs2() /
+        MeanOfLocalSquares);
     if (this->LocalFactors.size() == 0)
     {
       this->LocalFactors = Vector::Ones(squares.size());

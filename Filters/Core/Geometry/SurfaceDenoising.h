@@ -54,8 +54,8 @@ struct DenoisingReport
 /// per vertex, by local means of the squared displacements (G. Gilboa, N. Sochen, Y. Zeevi,
 /// Variational Denoising of Partly Textured Images by Spatially Varying Constraints, IEEE
 /// Transactions on Image Processing 15(8), 2006). And they should be as white (see
-/// DisplacementStatistics). Around a vertex whose displacements remain less so, the second iterations
-/// have removed noise only, and their result is kept. Elsewhere they have removed details, and the
+/// DisplacementStatistics). Where their whiteness stays below that of independent noise, the second
+/// iterations have removed noise only, and their result is kept. Elsewhere they have removed details, and the
 /// result is that of steps which end before. It is so, too, where displacements have three times the
 /// variance of the noise.
 ///
