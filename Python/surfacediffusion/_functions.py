@@ -301,6 +301,8 @@ def heat(
     `number_of_time_steps` is 10 by default, as in all models, which suits a look at the states on the
     way. For a single result of a given `fwhm` 3 steps are enough, as ``surfacediffusion smooth`` takes:
     with them thickness maps of cortices are within 0.1 % (L2) of the solution at widths of 6 to 20 mm.
+    White noise needs 5 from about 8 mean edge lengths on: 3 leave 9 % (L2), and it is rougher than
+    that of the width; 5 leave 0.7 %.
 
     More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
     in double precision does not grow with their number. This does not hold with `automatic_fidelity`,
@@ -610,10 +612,10 @@ def denoise_mesh(
         sum_f 1/3 sum_{edges ij of f} (n_f . (x_i - x_j))^2 + sum_i l_i (N_i . (x_i - x0_i))^2
 
     and a term that keeps tangential displacements small. All weights follow from the noise level: l_i
-    is proportional to the inverse of its square, and smaller for outliers. Steps end, around each
-    point, before the displacements along the normals are as white as independent noise, but only where
-    more steps would remove details: where the displacements were less white after all of them, these
-    are kept. On CAD shapes the total generalised variation of the normals is minimised then (Liu, Li, Wang, Liu,
+    is proportional to the inverse of its square, and smaller for outliers. Where the displacements along
+    the normals stay less alike at neighbours than independent noise after all steps, these have removed
+    noise only, and are kept. Elsewhere steps end before they remove details. On CAD shapes the
+    total generalised variation of the normals is minimised then (Liu, Li, Wang, Liu,
     Chen, TVCG 28(12), 2022). A surface counts as CAD if the displacements are as white as independent
     noise after this. Otherwise it is organic, and the result before is kept: details were lost.
 

@@ -312,13 +312,17 @@ def smooth_to_fwhm(
     # Squares of widths add up: the correction is a secant step on squares.
     width = np.sqrt(fwhm**2 - found**2)
     before = (0.0, found**2)
+    largest = found**2
     for _ in range(12):
         reached = measure(smooth(noise, width)) ** 2
+        if not np.isfinite(reached) or width**2 == before[0]:
+            break  # on a surface that is smaller than the kernel
+        largest = max(largest, reached)
         if abs(np.sqrt(reached) / fwhm - 1.0) <= tolerance:
             return smooth(values, width, dtype=dtype)
         slope = (reached - before[1]) / (width**2 - before[0])
         before = (width**2, reached)
         step = (fwhm**2 - reached) / slope if slope > 0.1 else fwhm**2 - reached
         width = np.sqrt(min(max(width**2 + step, 0.01 * width**2), 100.0 * width**2))
-    raise ValueError(f"fwhm is {fwhm:g}, but smoothing reaches {np.sqrt(reached):.4g}; allowed: "
+    raise ValueError(f"fwhm is {fwhm:g}, but smoothing reaches {np.sqrt(largest):.4g}; allowed: "
                      "widths of several edges that are small against the surface")

@@ -23,8 +23,7 @@ __all__ = [
 
 class ArrayResult:
     """A result of more than one array. It stands for its main array, which ``numpy.asarray(result)`` is:
-    functions of numpy take it, and it has the array's `shape`, `dtype`, length and elements. All results
-    of this package are such."""
+    functions of numpy take it, and it has the array's `shape`, `dtype`, length and elements."""
 
     #: The attribute that is the main array.
     MAIN: ClassVar[str] = "values"

@@ -133,7 +133,7 @@ def region_and_columns(parser):
                         help="zeros mean missing, as NaN does")
     parser.add_argument("--column", "-column", action="append", metavar="N|NAME", default=[],
                         help="a column of DATA by number (from 1) or name; can be repeated. "
-                             "Default: all")
+                             "Default: all; of a VTK file with active scalars, these")
 
 
 def data_to_data(parser, text="the result"):
