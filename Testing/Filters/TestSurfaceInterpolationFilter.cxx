@@ -3,7 +3,9 @@
 #include "FilterTest.h"
 
 #include "vtkAppendPolyData.h"
+#include "vtkCellArray.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkPoints.h"
 #include "vtkSurfaceInterpolationFilter.h"
 #include "vtkTable.h"
 
@@ -13,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 using namespace FilterTest;
 
@@ -66,6 +69,33 @@ vtkSmartPointer<vtkPolyData> Probes(int count, double scale)
   AddPointArray(probes, "w", 1, [](vtkIdType i, int) { return i % 2 == 0 ? 1.0 : 0.0; });
   probes->GetPointData()->SetActiveScalars("t");
   return probes;
+}
+
+/// Triangles with points of their own, whose array "point" has the points of the surface.
+vtkSmartPointer<vtkPolyData> TriangleSoup(vtkPolyData* surface)
+{
+  auto soup = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> triangles;
+  std::vector<vtkIdType> of;
+  for (vtkIdType t = 0; t < surface->GetNumberOfCells(); ++t)
+  {
+    triangles->InsertNextCell(3);
+    for (int a = 0; a < 3; ++a)
+    {
+      of.push_back(surface->GetCell(t)->GetPointId(a));
+      triangles->InsertCellPoint(points->InsertNextPoint(surface->GetPoint(of.back())));
+    }
+  }
+  soup->SetPoints(points);
+  soup->SetPolys(triangles);
+  AddPointArray(soup, "point", 1, [&](vtkIdType i, int) { return static_cast<double>(of[i]); });
+  vtkDataArray* const values = surface->GetPointData()->GetScalars();
+  AddPointArray(
+    soup, values->GetName(), 1, [&](vtkIdType i, int) { return values->GetComponent(of[i], 0); });
+  soup->GetPointData()->SetActiveScalars(values->GetName());
+  return soup;
 }
 
 vtkSmartPointer<Filter> MakeFilter(vtkDataObject* surface, vtkDataObject* points = nullptr)
@@ -131,6 +161,44 @@ TEST(InterpolationFilter, HasTheKnownValuesOfTheData)
   EXPECT_LT(LargestError(filter, "fInterpolated"), 0.03);
   EXPECT_EQ(filter->GetNumberOfValues(), (u->GetNumberOfTuples() + 8) / 9);
   EXPECT_EQ(filter->GetEffectiveSmoothing(), 0.0);
+}
+
+/// As files of triangles without neighbours store them.
+TEST(InterpolationFilter, EqualValuesOfMergedPointsCountOnce)
+{
+  auto sphere = SparseSphere(3);
+  auto filter = MakeFilter(sphere);
+  filter->ComputeErrorOn();
+  filter->SetNoiseLevel(0.1);
+  filter->Update();
+  auto soup = TriangleSoup(sphere);
+  auto merging = MakeFilter(soup);
+  merging->ComputeErrorOn();
+  merging->SetNoiseLevel(0.1);
+  merging->MergeCoincidentPointsOn();
+  merging->Update();
+  EXPECT_EQ(filter->GetNumberOfValues(), merging->GetNumberOfValues());
+  for (const char* const name : { "fInterpolated", "fError" })
+  {
+    vtkDataArray* const whole = Result(filter, name);
+    vtkDataArray* const apart = Result(merging, name);
+    ASSERT_TRUE(whole && apart);
+    for (vtkIdType i = 0; i < apart->GetNumberOfTuples(); ++i)
+    {
+      const auto point =
+        static_cast<vtkIdType>(soup->GetPointData()->GetArray("point")->GetComponent(i, 0));
+      EXPECT_NEAR(apart->GetComponent(i, 0), whole->GetComponent(point, 0), 1e-6);
+    }
+  }
+  // Other values at the same place are other measurements.
+  vtkDataArray* const values = soup->GetPointData()->GetArray("f");
+  for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i)
+  {
+    values->SetComponent(i, 0, values->GetComponent(i, 0) + 1e-3 * static_cast<double>(i));
+  }
+  values->Modified();
+  merging->Update();
+  EXPECT_GT(merging->GetNumberOfValues(), 3 * filter->GetNumberOfValues());
 }
 
 TEST(InterpolationFilter, TakesValuesOfPointsBesideTheSurface)

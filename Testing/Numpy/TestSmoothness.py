@@ -4,6 +4,7 @@
 
 import sys
 import unittest
+import warnings
 
 import numpy as np
 
@@ -153,6 +154,14 @@ class SmoothTo(unittest.TestCase):
                  + 0.3 * gaussian_noise(self.surface, 6 * self.h, seed=5))
         smooth = self.reach(noise, 5 * self.h, residuals=noise)
         self.assertLess(abs(sd.estimate_fwhm(self.surface, smooth).pooled / (5 * self.h) - 1), 0.01)
+
+    def test_widths_above_the_surface_name_the_largest_that_is_reached(self):
+        noise = np.random.default_rng(3).normal(size=(self.surface.n_points, 5))
+        for width in (20.0, 200.0):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                with self.assertRaisesRegex(ValueError, "but smoothing reaches [0-9.]+; allowed"):
+                    sd.smooth_to_fwhm(self.surface, noise, width * RADIUS)
 
     def test_series_is_measured_without_its_mean(self):
         signal = 100.0 * self.surface.points[:, [2]] / RADIUS

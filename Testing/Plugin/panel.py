@@ -40,7 +40,7 @@ def offered(proxy):
         decorators = [] if hints is None else [
             hints.GetNestedElement(n) for n in range(hints.GetNumberOfNestedElements())]
         shown = not prop.GetInformationOnly() and prop.GetPanelVisibility() != "never"
-        if iterator.GetKey() != "Input" and shown and all(
+        if not prop.IsA("vtkSMInputProperty") and shown and all(
                 holds(proxy, element) for element in decorators
                 if element.GetName() == "PropertyWidgetDecorator"):
             yield iterator.GetKey()
