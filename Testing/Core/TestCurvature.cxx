@@ -137,8 +137,8 @@ Surface Cap(int level, double radius)
 
 } // namespace
 
-/// Of half planes that meet in an edge, and of solids without other edges than sharp ones. Neighbours
-/// with normals at 60 degrees or more did not count, so that the sharpest ones were flat.
+/// Of half planes that meet in an edge, and of solids without other edges than sharp ones. Where no
+/// neighbours with normals at 60 degrees or more count, the sharpest ones are flat.
 TEST(Curvature, SharpEdgesAndCornersAreNotFlat)
 {
   double last = 0.0;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -80,31 +81,43 @@ struct LocalShape
   double Gaussian = 0.0;
 };
 
-LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i, const Disk& disk)
+/// The vertices of the disk that a function over the plane orthogonal to the normal of vertex i can
+/// reach, and if `withRing` all of its ring.
+std::vector<Index> ReachableOf(const Points& normals, Index i, const Disk& disk, bool withRing)
 {
   constexpr double steepest = 0.5; // the cosine of the largest angle of normals
+  std::vector<Index> reachable;
+  std::copy_if(disk.All.begin(), disk.All.end(), std::back_inserter(reachable),
+    [&](Index j)
+    {
+      return normals.row(j).dot(normals.row(i)) > steepest ||
+        (withRing && std::binary_search(disk.Ring.begin(), disk.Ring.end(), j));
+    });
+  return reachable;
+}
+
+/// isDetermined: whether these vertices determine the polynomial.
+LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i,
+  const std::vector<Index>& vertices, bool& isDetermined)
+{
   const Eigen::Vector3d normal = normals.row(i).transpose();
   LocalShape found{ normals.row(i) };
+  isDetermined = false;
   if (!(normal.norm() > 0.0))
   {
     return found;
   }
   const auto axes = TangentAxes(normal);
-  Eigen::Matrix<double, Eigen::Dynamic, 5> rows(static_cast<Eigen::Index>(disk.All.size()), 5);
-  Vector heights(rows.rows());
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 5> rows(count, 5);
+  Vector heights(count);
   double radius = 0.0;
-  Eigen::Index count = 0;
-  for (const Index j : disk.All)
+  for (Eigen::Index k = 0; k < count; ++k)
   {
-    if (normals.row(j).dot(normals.row(i)) > steepest ||
-      std::binary_search(disk.Ring.begin(), disk.Ring.end(), j))
-    {
-      const Eigen::Vector3d d = (positions.row(j) - positions.row(i)).transpose();
-      rows.row(count).head<2>() = d.transpose() * axes;
-      heights[count] = -d.dot(normal); // positive where the surface bends away from the normal
-      radius = std::max(radius, rows.row(count).head<2>().norm());
-      ++count;
-    }
+    const Eigen::Vector3d d = (positions.row(vertices[k]) - positions.row(i)).transpose();
+    rows.row(k).head<2>() = d.transpose() * axes;
+    heights[k] = -d.dot(normal); // positive where the surface bends away from the normal
+    radius = std::max(radius, rows.row(k).head<2>().norm());
   }
   if (!(radius > 0.0))
   {
@@ -118,8 +131,9 @@ LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, Eigen::Dynamic, 5>> fit;
   fit.setThreshold(1e-6);
-  fit.compute(rows.topRows(count));
-  const Eigen::Matrix<double, 5, 1> c = fit.solve(Vector(heights.head(count) / radius));
+  fit.compute(rows);
+  isDetermined = fit.rank() == 5;
+  const Eigen::Matrix<double, 5, 1> c = fit.solve(Vector(heights / radius));
   const double p = c[0];
   const double q = c[1];
   const double w = 1.0 + p * p + q * q;
@@ -129,6 +143,20 @@ LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i
     (2.0 * w * std::sqrt(w) * radius);
   found.Gaussian = (c[2] * c[4] - c[3] * c[3]) / (w * w * radius * radius);
   return found;
+}
+
+/// Where the vertices that a function reaches do not determine a polynomial, as at edges and corners
+/// that are sharp, all neighbours count.
+LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i, const Disk& disk)
+{
+  bool isDetermined = false;
+  const std::vector<Index> reachable = ReachableOf(normals, i, disk, false);
+  const LocalShape found = FitPolynomial(positions, normals, i, reachable, isDetermined);
+  if (isDetermined || reachable.size() == disk.All.size())
+  {
+    return found;
+  }
+  return FitPolynomial(positions, normals, i, ReachableOf(normals, i, disk, true), isDetermined);
 }
 
 /// Call use(i, shape) for all vertices.
