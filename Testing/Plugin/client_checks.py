@@ -25,7 +25,7 @@ RESULTS = {
     "HarmonicMapFilter": (("POINTS", "NormalsHarmonic"), 0.528583, ("POINTS", "f")),  # seen in the shading
     "MumfordShahFilter": (("POINTS", "fMumfordShah"), 0.620381, ("POINTS", "fMumfordShah")),
     "SurfaceDenoisingFilter": (("POINTS", "Displacement"), 0.00250532, ("POINTS", "f")),
-    "SurfaceCurvatureFilter": (("POINTS", "MeanCurvature"), 18.0293403, ("POINTS", "MeanCurvature")),
+    "SurfaceCurvatureFilter": (("POINTS", "MeanCurvature"), 17.799728, ("POINTS", "MeanCurvature")),
     "SurfaceDerivativesFilter": (("POINTS", "fGradient"), 10.6204755, ("POINTS", "f")),
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
     "SurfaceDistanceFilter": (("POINTS", "Distance"), 0.517775714, ("POINTS", "Distance")),
