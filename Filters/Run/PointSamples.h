@@ -52,10 +52,11 @@ struct KnownValues
   bool AreSamples = false;
 };
 
-/// The known values of the fields, divided by `unit`: of samples at their places, of points at their
-/// vertices, and of cells in the middle of their largest triangle, where linear functions have the
-/// value of CellTransfer::ToCells() on triangles. Equal values of merged points count once. Fidelity
-/// factors are the weights; values of weight 0 do not count. cells: the cell of each row of surface.MakeTriangles(), of data on cells.
+/// The known values of the fields, divided by `unit`: of samples at their places, of points at
+/// their vertices, and of cells in the middle of their largest triangle, where linear functions
+/// have the value of CellTransfer::ToCells() on triangles. Equal values of merged points count
+/// once. Fidelity factors are the weights; values of weight 0 do not count. cells: the cell of each
+/// row of surface.MakeTriangles(), of data on cells.
 KnownValues FindKnownValues(
   const Surface& surface, const Fields& fields, bool inpaint, double unit, double maximumDistance);
 

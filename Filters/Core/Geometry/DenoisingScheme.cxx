@@ -52,8 +52,8 @@ constexpr WhitenessLimits LimitsOfResult = { 0.85, 1.1 };
 /// the noise: nothing from this mean square on, in squares of the noise. Impulsive noise, whose level
 /// is that of fewer vertices, and noise that is underestimated have up to 2.
 constexpr double LargestMeanSquare = 3.0;
-/// The pauses between measurements of the whiteness grow by one iteration after so many, since steps
-/// become smaller.
+/// The pauses between measurements of the whiteness grow by one iteration after so many, since
+/// steps become smaller.
 constexpr int IterationsPerPause = 4;
 
 /// The stages of a scheme.

@@ -55,9 +55,9 @@ struct DenoisingReport
 /// Variational Denoising of Partly Textured Images by Spatially Varying Constraints, IEEE
 /// Transactions on Image Processing 15(8), 2006). And they should be as white (see
 /// DisplacementStatistics). Where their whiteness stays below that of independent noise, the second
-/// iterations have removed noise only, and their result is kept. Elsewhere they have removed details, and the
-/// result is that of steps which end before. It is so, too, where displacements have three times the
-/// variance of the noise.
+/// iterations have removed noise only, and their result is kept. Elsewhere they have removed
+/// details, and the result is that of steps which end before. It is so, too, where displacements
+/// have three times the variance of the noise.
 ///
 /// If the type is Automatic, the variation of normals is minimised, too, and its result is kept if
 /// the displacements are then as white as independent noise. Otherwise it has removed details, which

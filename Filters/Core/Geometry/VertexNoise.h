@@ -53,13 +53,13 @@ struct CorrelatedNoise
 /// noise the details of a surface make it grow from more rings on. The details of a surface make
 /// sigma_r grow with r all the way, by a factor of 2 and more from r = 8 to r = 16.
 ///
-/// Noise is correlated if sigma_4 > 1.3 sigma_2, sigma_16 < 1.6 sigma_8, and sigma_16 is between 0.1
-/// h and h, on surfaces of at least 3,200 vertices, of which sixteen rings are a small part. And it is
-/// normally distributed: the 0.95 quantile of distances with 4, 6 and 8 rings is at least 0.8 of that of
-/// such numbers. Sine waves in one or two directions along the mesh are bounded, and have 0.3 to 0.7;
-/// sums of waves in several directions and waves with cusps may have 1, and resemble noise. The level
-/// is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of the level. Noise with
-/// L > 3 h does not reach its level within sixteen rings and is not found.
+/// Noise is correlated if sigma_4 > 1.3 sigma_2, sigma_16 < 1.6 sigma_8, and sigma_16 is between
+/// 0.1 h and h, on surfaces of at least 3,200 vertices, of which sixteen rings are a small part.
+/// And it is normally distributed: the 0.95 quantile of distances with 4, 6 and 8 rings is at least
+/// 0.8 of that of such numbers. Sine waves in one or two directions along the mesh are bounded, and
+/// have 0.3 to 0.7; sums of waves in several directions and waves with cusps may have 1, and
+/// resemble noise. The level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of
+/// the level. Noise with L > 3 h does not reach its level within sixteen rings and is not found.
 ///
 /// given: the level, if it is known, otherwise 0. Then noise of these surfaces is correlated, too, if
 /// sigma_2^2 is less than half of its square and sigma_4 > 1.8 sigma_2, up to L = 16/3 h: details have

@@ -11,9 +11,10 @@
 namespace SurfaceDiffusion
 {
 
-/// What becomes of boundary edges opposite an obtuse angle. Flipped over the boundary, to the back of
-/// their triangle, they leave no negative weight. But the new edge crosses the boundary, so that
-/// linear functions are no longer kept exactly beside it, and ways along edges may leave the surface.
+/// What becomes of boundary edges opposite an obtuse angle. Flipped over the boundary, to the back
+/// of their triangle, they leave no negative weight. But the new edge crosses the boundary, so that
+/// linear functions are no longer kept exactly beside it, and ways along edges may leave the
+/// surface.
 enum class BoundaryEdges
 {
   Flip,
