@@ -3,10 +3,10 @@
 #include "Core/Surface/IntrinsicTriangulation.h"
 
 #include "Core/Foundation/Grouping.h"
+#include "Core/Surface/SideLengths.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -18,53 +18,6 @@ namespace
 {
 
 using Vec2 = Eigen::Vector2d;
-
-constexpr int Next(int a)
-{
-  return (a + 1) % 3;
-}
-constexpr int Last(int a)
-{
-  return (a + 2) % 3;
-}
-
-/// Of a triangle with sides a, b, c, the corner opposite c, with c from the origin to (c, 0).
-Vec2 Apex(double a, double b, double c)
-{
-  const double x = (c * c + (b - a) * (b + a)) / (2.0 * c);
-  // Kahan's stable product for needles: 16 area^2 from sorted lengths.
-  std::array<double, 3> s{ a, b, c };
-  std::sort(s.begin(), s.end());
-  const double squared = (s[2] + (s[1] + s[0])) * (s[0] - (s[2] - s[1])) * (s[0] + (s[2] - s[1])) *
-    (s[2] + (s[1] - s[0]));
-  return { x, 0.5 * std::sqrt(std::max(squared, 0.0)) / c };
-}
-
-Vec2 Apex(const std::array<double, 3>& lengths)
-{
-  return Apex(lengths[0], lengths[1], lengths[2]);
-}
-
-double Area(const std::array<double, 3>& lengths)
-{
-  return 0.5 * lengths[2] * Apex(lengths)[1];
-}
-
-/// The angle of side a in the triangle's own axes.
-double AngleOfSide(const std::array<double, 3>& lengths, int a)
-{
-  const std::array<Vec2, 3> corners{ Vec2(0.0, 0.0), Vec2(lengths[2], 0.0), Apex(lengths) };
-  const Vec2 direction = corners[Last(a)] - corners[Next(a)];
-  return std::atan2(direction[1], direction[0]);
-}
-
-/// False for a triangle that is degenerate in floating point: its weights would not be finite.
-bool IsProper(const std::array<double, 3>& lengths)
-{
-  constexpr double flat = 4.0 * std::numeric_limits<double>::epsilon(); // as in TriangleMesh
-  const double longest = std::max({ lengths[0], lengths[1], lengths[2] });
-  return lengths[2] * Apex(lengths)[1] > flat * longest * longest;
-}
 
 /// The side of the back of the same triangle, whose corners 1 and 2 are exchanged.
 Index BackOf(Index side, Index triangleCount)
@@ -82,11 +35,11 @@ IntrinsicTriangulation::IntrinsicTriangulation(
   this->TwoSheets = !IsOneSheet(edges.Uses, parallel);
   this->MakeSheets(mesh, parallel);
   this->JoinSheets(edges, mesh.NumberOfTriangles(), parallel);
+  this->Mollify(parallel);
   if (boundary == BoundaryEdges::Keep && this->TwoSheets)
   {
-    this->KeepBoundaryEdges(mesh.NumberOfTriangles());
+    this->PartSheetsAtBoundaries(mesh.NumberOfTriangles());
   }
-  this->Mollify(parallel);
 }
 
 IntrinsicTriangulation::EdgeList IntrinsicTriangulation::ListEdges(
@@ -187,16 +140,16 @@ void IntrinsicTriangulation::JoinSheets(
     });
 }
 
-/// Those whose front and back are joined.
-void IntrinsicTriangulation::KeepBoundaryEdges(Index triangleCount)
+/// A side of its own twin is not flipped.
+void IntrinsicTriangulation::PartSheetsAtBoundaries(Index triangleCount)
 {
-  this->IsKept.assign(3 * this->Triangles.size(), 0);
   for (Index side = 0; side < 3 * triangleCount; ++side)
   {
     const Index back = BackOf(side, triangleCount);
     if (this->Twin(side) == back)
     {
-      this->IsKept[side] = this->IsKept[back] = 1;
+      this->Join(side, side);
+      this->Join(back, back);
     }
   }
 }
@@ -290,13 +243,9 @@ double IntrinsicTriangulation::Cotangent(Index side) const
 bool IntrinsicTriangulation::IsDelaunay(Index side) const
 {
   const Index twin = this->Twin(side);
-  if (!this->IsKept.empty() && this->IsKept[side])
-  {
-    return true;
-  }
   if (twin / 3 == side / 3)
   {
-    return true; // a cone around one vertex: nothing to flip
+    return true; // a cone around one vertex, or a boundary: nothing to flip
   }
   const double here = this->Cotangent(side);
   const double there = this->Cotangent(twin);
@@ -357,18 +306,6 @@ void IntrinsicTriangulation::Relink(Index side, Index twin)
   };
   const std::array<Index, 4> twins{ moved(f.Twins[Last(a)]), moved(f.Twins[Next(a)]),
     moved(g.Twins[Last(b)]), moved(g.Twins[Next(b)]) };
-
-  if (!this->IsKept.empty())
-  {
-    std::array<char, 4> isKept;
-    std::transform(outer.begin(), outer.end(), isKept.begin(),
-      [&](const auto& places) { return this->IsKept[places.first]; });
-    for (int k = 0; k < 4; ++k)
-    {
-      this->IsKept[outer[k].second] = isKept[k];
-    }
-    this->IsKept[3 * first + 1] = this->IsKept[3 * second + 1] = 0;
-  }
 
   const Index A = f.Vertices[a];
   const Index P = f.Vertices[Next(a)];

@@ -43,12 +43,13 @@ public:
 
   /// Side 3 t + a of triangle t is its edge opposite corner a, from corner a + 1 to corner a + 2.
   Index NumberOfSides() const { return 3 * static_cast<Index>(this->Triangles.size()); }
-  /// The other side of the same edge.
+  /// The other side of the same edge; the same side at boundaries that are kept.
   Index Twin(Index side) const { return this->Triangles[side / 3].Twins[side % 3]; }
   /// The vertex at corner a of triangle t.
   Index Vertex(Index t, int a) const { return this->Triangles[t].Vertices[a]; }
 
-  /// Whether the cotangents opposite the edge have a nonnegative sum, up to round-off, or it is kept.
+  /// Whether the cotangents opposite the edge have a nonnegative sum, up to round-off, or nothing is to
+  /// be flipped there.
   bool IsDelaunay(Index side) const;
 
   /// A flip, with the rotations that carry tangent vectors over it. Angles are in radians from the
@@ -104,7 +105,7 @@ private:
   static bool IsOneSheet(const Buffer<EdgeUse>& uses, const ParallelFor& parallel);
   void MakeSheets(const TriangleMesh& mesh, const ParallelFor& parallel);
   void JoinSheets(const EdgeList& edges, Index triangleCount, const ParallelFor& parallel);
-  void KeepBoundaryEdges(Index triangleCount);
+  void PartSheetsAtBoundaries(Index triangleCount);
   void Join(Index side, Index other);
   void Mollify(const ParallelFor& parallel);
   double LackOfSlack(Index t, int a) const;
@@ -113,7 +114,6 @@ private:
 
   Buffer<Triangle> Triangles;
   bool TwoSheets = false;
-  std::vector<char> IsKept; ///< per side; empty: all may be flipped
 };
 
 } // namespace SurfaceDiffusion
