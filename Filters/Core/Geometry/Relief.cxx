@@ -67,7 +67,11 @@ EdgeCounts CountEdges(const Triangles& faces, Index numberOfVertices)
   sides.reserve(3 * static_cast<std::size_t>(faces.rows()));
   for (Eigen::Index t = 0; t < faces.rows(); ++t)
   {
-    for (int a = 0; a < 3 && !IsCollapsed(faces, t); ++a)
+    if (IsCollapsed(faces, t))
+    {
+      continue;
+    }
+    for (int a = 0; a < 3; ++a)
     {
       sides.emplace_back(std::minmax({ faces(t, a), faces(t, (a + 1) % 3) }));
     }

@@ -50,7 +50,11 @@ Neighbours FindNeighbours(const Triangles& triangles)
   sides.reserve(3 * static_cast<std::size_t>(triangles.rows()));
   for (Index t = 0; t < static_cast<Index>(triangles.rows()); ++t)
   {
-    for (int a = 0; a < 3 && !IsCollapsed(triangles, t); ++a)
+    if (IsCollapsed(triangles, t))
+    {
+      continue;
+    }
+    for (int a = 0; a < 3; ++a)
     {
       const Index from = triangles(t, a);
       const Index to = triangles(t, (a + 1) % 3);

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace SurfaceDiffusion
 {
@@ -262,22 +261,19 @@ CorrelatedNoise EstimateCorrelatedNoise(
     return CorrelatedNoise();
   }
   const std::vector<int> rings{ 2, 3, 4, 6, 8, 12, 16 };
-  const std::vector<Deviation> measured =
+  const std::vector<Deviation> deviations =
     MeasureDeviations(mesh, points, rings, StrideFor(mesh, EnoughWideNeighbourhoods), parallel);
-  std::vector<double> deviations;
-  std::transform(measured.begin(), measured.end(), std::back_inserter(deviations),
-    [](const Deviation& deviation) { return deviation.Sigma; });
-  const bool hasTails = std::all_of(measured.begin() + 2, measured.begin() + 5,
+  const bool hasTails = std::all_of(deviations.begin() + 2, deviations.begin() + 5,
     [](const Deviation& deviation) { return deviation.Tail >= SmallestTail * deviation.Sigma; });
   const double h = mesh.MeanEdgeLength();
-  if (given > 0.0 && given * given <= 2.0 * deviations[0] * deviations[0])
+  if (given > 0.0 && given * given <= 2.0 * deviations[0].Sigma * deviations[0].Sigma)
   {
     return CorrelatedNoise(); // independent noise explains the level
   }
-  const double growth = deviations[2] / deviations[0];
-  const double last = deviations.back();
+  const double growth = deviations[2].Sigma / deviations[0].Sigma;
+  const double last = deviations.back().Sigma;
   const bool hasLevel = growth > LeastGrowth && hasTails &&
-    last < LargestLateGrowth * deviations[4] && last > SmallestCorrelated * h &&
+    last < LargestLateGrowth * deviations[4].Sigma && last > SmallestCorrelated * h &&
     last < LargestCorrelated * h;
   const bool reachesLevel = given > 0.0 && growth > LeastGrowthToLevel;
   if (!hasLevel && !reachesLevel)
@@ -286,13 +282,13 @@ CorrelatedNoise EstimateCorrelatedNoise(
   }
   const double level = given > 0.0 ? given : last;
   std::size_t k = 1;
-  while (k + 1 < rings.size() && 2.0 * deviations[k] * deviations[k] < level * level)
+  while (k + 1 < rings.size() && 2.0 * deviations[k].Sigma * deviations[k].Sigma < level * level)
   {
     ++k;
   }
   // interpolated between the two numbers of rings
-  const double below = deviations[k - 1] * deviations[k - 1];
-  const double above = deviations[k] * deviations[k];
+  const double below = deviations[k - 1].Sigma * deviations[k - 1].Sigma;
+  const double above = deviations[k].Sigma * deviations[k].Sigma;
   const double share =
     above > below ? std::clamp((0.5 * level * level - below) / (above - below), 0.0, 1.0) : 1.0;
   const double radius = rings[k - 1] + share * (rings[k] - rings[k - 1]);
