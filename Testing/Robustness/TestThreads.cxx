@@ -114,7 +114,10 @@ bool RunsTwoTasksAtOnce(std::chrono::milliseconds patience)
       const auto start = std::chrono::steady_clock::now();
       while (!together && end - begin == 1 && std::chrono::steady_clock::now() - start < patience)
       {
-        together = together || active == 2;
+        if (active == 2) // never set back to false: the other task may have found it at this moment
+        {
+          together = true;
+        }
       }
       --active;
     });
