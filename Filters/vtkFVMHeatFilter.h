@@ -32,7 +32,11 @@
  * J. Numer. Anal. 14, 1977). It is L-stable and solves two systems with one matrix per step. For an
  * error of 1e-3 it takes 3 to 4 steps; FirstOrder, backward Euler as in (8) and (14), takes about
  * 100. Backward Euler keeps the bounds of the data on Delaunay meshes at any time step, SDIRK2 only
- * at small time steps. One FirstOrder step of 2/k^2 is the implicit filter by scale of order 1,
+ * at small time steps. Exponential gives what the heat equation does to the data in one step of any
+ * length: a polynomial of degree 6 in a step of backward Euler (one pole: S. Norsett, SIAM J. Numer.
+ * Anal. 15, 1978), six solves with one matrix. The variance of its kernel is exact, and the error is
+ * at most 0.0014 of the range of the data for an eigenfunction, and 0.5 % of the result for white
+ * noise, where three steps of SecondOrder, of six solves, too, are off by 7 %. One FirstOrder step of 2/k^2 is the implicit filter by scale of order 1,
  * (1 - 2/k^2 Laplace) u = f, which leaves a third of waves of the wave number k.
  *
  * The energy in the history is 1/2 int (g1 (grad u . e1)^2 + g2 (grad u . e2)^2) + lambda/2
@@ -133,19 +137,23 @@ public:
   SURFACEDIFFUSION_PROPERTY(BlurFWHM, double);
 
   /**
-   * The number of steps of the blur of BlurFWHM, 2 to 64. More steps make its point spread function
-   * more similar to a Gaussian. Default: 4.
+   * The number of steps of the blur of BlurFWHM, 2 to 64. With 4, the default, its point spread
+   * function has the half maximum of a Gaussian but longer tails, so that waves as long as the width
+   * come back up to a third too high if the blur was that of heat flow. More steps are more similar
+   * to a Gaussian: 64 restore such waves to 1 %, and amplify noise more.
    */
   SURFACEDIFFUSION_PROPERTY(BlurSteps, int);
 
   ///@{
   /**
    * The time integrator, see the class comment. FirstOrder is the paper's; SecondOrder (default)
-   * does not keep the bounds of the data at large time steps. Implicit is an error.
+   * does not keep the bounds of the data at large time steps, nor does Exponential, which is the most
+   * accurate one for few steps. Implicit is an error.
    */
   SURFACEDIFFUSION_CHOICE(TimeIntegrator);
   void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }
   void SetTimeIntegratorToSecondOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_SECOND_ORDER); }
+  void SetTimeIntegratorToExponential() { this->SetTimeIntegrator(TIME_INTEGRATOR_EXPONENTIAL); }
   ///@}
 
   /**

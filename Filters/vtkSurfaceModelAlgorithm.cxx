@@ -4,6 +4,7 @@
 
 #include "Conversion/InputArrays.h"
 #include "Conversion/NewArray.h"
+#include "Conversion/PieceRefinement.h"
 #include "Conversion/ResultWriter.h"
 #include "Distributed/CellFlags.h"
 #include "Run/BlockSentences.h"
@@ -313,6 +314,8 @@ void vtkSurfaceModelAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bl
     if (takesPart || this->FindFields(block.Input, arrays, here))
     {
       arrays.GlobalIds = block.Input->GetPointData()->GetGlobalIds();
+      arrays.Between = block.Input->GetPointData()->GetArray(PieceRefinement::BetweenName);
+      arrays.GivenCells = block.Input->GetCellData()->GetArray(PieceRefinement::GivenCellsName);
       surfaces.push_back(block);
       fields.push_back(arrays);
       found.push_back(here);

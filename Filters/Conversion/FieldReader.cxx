@@ -144,7 +144,7 @@ std::vector<vtkDataArray*> InputFields::List() const
 {
   return { this->Data.Values, this->Mask.Values, this->Direction.Values, this->Fixed.Values,
     this->Rates, this->Fidelity.Values, this->Seeds.Values, this->Speeds.Values,
-    this->StartTimes.Values, this->GlobalIds };
+    this->StartTimes.Values, this->GlobalIds, this->Between, this->GivenCells };
 }
 
 unsigned int InputFields::Associations() const
@@ -224,6 +224,11 @@ Fields ReadFields(
   fields.Sources = arrays.Sources;
   fields.Speeds = { ReadFactors(arrays.Speeds.Values), arrays.Speeds.OnCells };
   fields.StartTimes = ReadFactors(arrays.StartTimes.Values);
+  fields.Between = ReadFlags(arrays.Between);
+  for (vtkIdType c = 0; arrays.GivenCells && c < numberOfCells; ++c)
+  {
+    fields.GivenCells.push_back(static_cast<Index>(arrays.GivenCells->GetComponent(c, 0)));
+  }
   if (fields.HasCells())
   {
     fields.NumberOfCells = static_cast<Index>(numberOfCells);

@@ -49,6 +49,8 @@ struct InputFields
   LocatedArray Speeds; ///< index 8
   LocatedArray StartTimes; ///< index 9, on points
   vtkDataArray* GlobalIds = nullptr; ///< of the points
+  vtkDataArray* Between = nullptr; ///< as in Fields, see PieceRefinement
+  vtkDataArray* GivenCells = nullptr; ///< likewise
 
   FieldSummary Summarize() const;
   /// All arrays, null for those that are not set.

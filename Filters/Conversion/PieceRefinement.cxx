@@ -17,6 +17,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkTypeInt64Array.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -202,6 +203,25 @@ vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(const Piece& piece, vt
   return surface;
 }
 
+/// points: the number of those of the input.
+void PieceRefinement::MarkMeasured(const Piece& piece, vtkIdType points, vtkPolyData* surface)
+{
+  const auto between = NewArray<vtkUnsignedCharArray>(BetweenName, 1, surface->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < between->GetNumberOfTuples(); ++i)
+  {
+    between->SetValue(i, i < points ? 0 : 1);
+  }
+  surface->GetPointData()->AddArray(between);
+  const auto given = NewArray<vtkIdTypeArray>(GivenCellsName, 1, surface->GetNumberOfCells());
+  const vtkIdType others = surface->GetNumberOfVerts() + surface->GetNumberOfLines();
+  for (vtkIdType c = 0; c < given->GetNumberOfTuples(); ++c)
+  {
+    given->SetValue(
+      c, piece.Points && c >= others ? piece.CellOf[static_cast<std::size_t>(c - others)] : c);
+  }
+  surface->GetCellData()->AddArray(given);
+}
+
 double PieceRefinement::Bisect(const std::vector<SurfacePiece>& pieces, double length,
   Index maximumTriangles, const ProgressMonitor& progress)
 {
@@ -226,15 +246,21 @@ Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces)
   for (std::size_t p = 0; p < pieces.size(); ++p)
   {
     const Piece& piece = this->Pieces[p];
+    vtkPolyData* const input = pieces[p].Input;
+    auto surface = vtkSmartPointer<vtkPolyData>::New();
     if (piece.Points)
     {
-      vtkPolyData* const input = pieces[p].Input;
-      const auto refined = MakeSurface(piece, input);
-      pieces[p].Output->ShallowCopy(refined);
-      this->Replaced.push_back({ input, refined, pieces[p].Output });
+      surface = MakeSurface(piece, input);
+      pieces[p].Output->ShallowCopy(surface);
       triangles += static_cast<Index>(piece.CellOf.size());
-      pieces[p].Input = refined;
     }
+    else
+    {
+      surface->ShallowCopy(input);
+    }
+    this->Replaced.push_back({ input, surface, pieces[p].Output });
+    MarkMeasured(piece, input->GetNumberOfPoints(), surface);
+    pieces[p].Input = surface;
   }
   return triangles;
 }

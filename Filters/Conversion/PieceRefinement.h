@@ -27,6 +27,10 @@ class PieceRefinement
 public:
   /// The cell of the input that each cell of a refined surface lies in.
   static constexpr const char* IdsName = "vtkOriginalCellIds";
+  /// Of the inputs during an update, not of their outputs: per point, 1 in the middle of an edge that
+  /// was bisected; per cell, the cell of the input that it was cut from.
+  static constexpr const char* BetweenName = "surface diffusion between";
+  static constexpr const char* GivenCellsName = "surface diffusion given cell";
 
   /// Forget the pieces that the last update has replaced.
   void Begin() { this->Replaced.clear(); }
@@ -44,7 +48,8 @@ public:
   double Bisect(const std::vector<SurfacePiece>& pieces, double length, Index maximumTriangles,
     const ProgressMonitor& progress);
 
-  /// Replace the inputs of the pieces that were bisected, and make their outputs copies of them.
+  /// Replace the inputs of the pieces that were bisected, and make their outputs copies of them. Mark
+  /// what was measured in all inputs.
   /// Arrays of points are linear along the edges that are bisected, except that integers of one
   /// component, which are labels and marks, become the smaller of two. Triangles have the data of
   /// their cells. Global ids, ghost cells and hidden cells are left out. Returns the number of
@@ -80,6 +85,7 @@ private:
   static void Bisect(Piece& piece, vtkPolyData* input, double length, Index maximumTriangles,
     const ProgressMonitor& progress);
   static vtkSmartPointer<vtkPolyData> MakeSurface(const Piece& piece, vtkPolyData* input);
+  static void MarkMeasured(const Piece& piece, vtkIdType points, vtkPolyData* surface);
 
   std::vector<Piece> Pieces;
   std::vector<Replacement> Replaced;

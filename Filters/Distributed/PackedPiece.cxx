@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/PackedPiece.h"
 
+#include "Conversion/PieceRefinement.h"
 #include "Distributed/CellFlags.h"
 #include "Distributed/ContentHash.h"
 
@@ -74,6 +75,13 @@ bool IsSelected(vtkAlgorithm* filter, vtkAbstractArray* array)
   return false;
 }
 
+/// Whether refinement has made the array, for all filters.
+bool IsOfRefinement(vtkAbstractArray* array)
+{
+  const std::string name = array->GetName() ? array->GetName() : "";
+  return name == PieceRefinement::BetweenName || name == PieceRefinement::GivenCellsName;
+}
+
 bool IsActive(
   const std::vector<int>& types, vtkDataSetAttributes* attributes, vtkAbstractArray* array)
 {
@@ -104,7 +112,7 @@ void PackAttributes(vtkAlgorithm* filter, vtkDataSetAttributes* from, vtkIdType 
   for (int a = 0; a < from->GetNumberOfArrays(); ++a)
   {
     vtkAbstractArray* const array = from->GetAbstractArray(a);
-    if ((!IsSelected(filter, array) && !IsActive(types, from, array)) ||
+    if (!(IsSelected(filter, array) || IsActive(types, from, array) || IsOfRefinement(array)) ||
       array->GetNumberOfTuples() < first + count)
     {
       continue;
@@ -216,7 +224,7 @@ Fingerprint FingerprintPiece(vtkAlgorithm* filter, const SurfacePiece& piece)
         const bool isActive = attributes->GetAbstractAttribute(type) == array;
         fingerprint.AddNumber(std::uint64_t{ isActive ? 1u : 0u });
       }
-      if (IsActive(types, attributes, array) || IsSelected(filter, array))
+      if (IsActive(types, attributes, array) || IsSelected(filter, array) || IsOfRefinement(array))
       {
         AddArray(fingerprint, vtkDataArray::SafeDownCast(array)); // others cannot be data
         fingerprint.AddNumber(static_cast<std::uint64_t>(array->GetDataType()));

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/StitchedSurface.h"
 
+#include "Conversion/PieceRefinement.h"
 #include "Distributed/PackedPiece.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
+#include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
@@ -215,7 +217,24 @@ void StitchedSurface::StitchCells(vtkPolyData* surface)
   surface->SetPolys(polygons);
   surface->SetStrips(strips);
   this->MergeArrays(sources, true, surface->GetCellData());
+  if (vtkDataArray* const given = surface->GetCellData()->GetArray(PieceRefinement::GivenCellsName))
+  {
+    TellPiecesApart(sources, given);
+  }
   this->FindOriginals(cells, ghosts);
+}
+
+/// Each piece has numbered its cells by itself.
+void StitchedSurface::TellPiecesApart(const std::vector<Source>& sources, vtkDataArray* numbers)
+{
+  std::map<std::pair<std::size_t, double>, std::size_t> found;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+  {
+    const auto cell = static_cast<vtkIdType>(i);
+    const auto inserted =
+      found.insert({ { sources[i].Piece, numbers->GetComponent(cell, 0) }, found.size() });
+    numbers->SetComponent(cell, 0, static_cast<double>(inserted.first->second));
+  }
 }
 
 /// A ghost cell gets the results of the cell with the same corners.

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+class vtkDataArray;
 class vtkDataSetAttributes;
 class vtkPolyData;
 
@@ -56,6 +57,7 @@ private:
 
   void StitchPoints(vtkPolyData* surface);
   void StitchCells(vtkPolyData* surface);
+  static void TellPiecesApart(const std::vector<Source>& sources, vtkDataArray* numbers);
   std::vector<Source> FindOwnedPoints() const;
   void ReadCells(std::vector<Cell>& cells, std::vector<Cell>& ghosts) const;
   void FindOriginals(const std::vector<Cell>& cells, const std::vector<Cell>& ghosts);

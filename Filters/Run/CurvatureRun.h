@@ -24,7 +24,7 @@ class CurvatureRun : public SurfaceRun
 {
 public:
   explicit CurvatureRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel, "have no curvature")
+    : SurfaceRun(parallel, "have no curvature", " and are not their neighbours")
   {
   }
 

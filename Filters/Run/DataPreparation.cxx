@@ -5,11 +5,13 @@
 #include "Core/Foundation/Random.h"
 #include "Core/Models/HeatBlur.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Statistics/MeasuredVertices.h"
 #include "Core/Statistics/NoiseCorrelation.h"
 #include "Core/Statistics/NoiseLevel.h"
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 
 namespace SurfaceDiffusion
 {
@@ -45,7 +47,7 @@ void WarnOfSmoothData(const ModelInputs& inputs, double estimate, RunResult& res
 /// Of the first guess of the search for a weight: keeps data to seven digits.
 constexpr double WeightWithoutNoise = 1e8;
 
-/// The data that the result has to differ from by the noise.
+/// The measured data that the result has to differ from by the noise.
 PointData WithoutConstantParts(const ModelInputs& inputs)
 {
   PointData data = inputs.Data;
@@ -53,6 +55,10 @@ PointData WithoutConstantParts(const ModelInputs& inputs)
   if (varying.any())
   {
     data.Missing = !varying;
+  }
+  else if (data.Measured)
+  {
+    data.Missing = data.Missing || data.Measured->IsBetween;
   }
   return data;
 }
@@ -62,22 +68,33 @@ PointData WithoutConstantParts(const ModelInputs& inputs)
 double FindCellNoiseGain(const ModelInputs& inputs)
 {
   const CellTransfer& cells = *inputs.Cells;
-  Values noise(cells.NumberOfCells(), 1);
-  std::int64_t number = 0; // cells that are no polygons, and their numbers, must not matter
+  Values noise = Values::Zero(cells.NumberOfCells(), 1);
+  std::map<Index, std::int64_t> numbers; // of those that were measured as one cell
+  std::int64_t next = 0; // cells that are no polygons, and their numbers, must not matter
   for (Index c = 0; c < cells.NumberOfCells(); ++c)
   {
-    noise(c, 0) = cells.Participates(c)
-      ? std::sqrt(3.0) * (2.0 * UniformRandom(0, 0, number++) - 1.0) // of deviation 1
-      : 0.0;
+    if (!cells.Participates(c))
+    {
+      continue;
+    }
+    std::int64_t number = next;
+    if (!inputs.GivenCells.empty())
+    {
+      number =
+        numbers.insert({ inputs.GivenCells[static_cast<std::size_t>(c)], next }).first->second;
+    }
+    next += number == next ? 1 : 0;
+    noise(c, 0) = std::sqrt(3.0) * (2.0 * UniformRandom(0, 0, number) - 1.0); // of deviation 1
   }
   const double found = EstimateBetweenNeighbours(
     inputs, PointData::FromValues(cells.ToVertices(noise, Vector::Ones(noise.rows())).Of));
-  return found > 0.0 ? cells.NoiseGain() / found : 0.0;
+  return found > 0.0 ? cells.NoiseGain(inputs.GivenCells) / found : 0.0;
 }
 
 double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel)
 {
-  return noiseLevel / inputs.Units.ValueUnit * (inputs.Cells ? inputs.Cells->NoiseGain() : 1.0);
+  return noiseLevel / inputs.Units.ValueUnit *
+    (inputs.Cells ? inputs.Cells->NoiseGain(inputs.GivenCells) : 1.0);
 }
 
 void DescribeData(const DataSettings& settings, ModelTraits& traits)

@@ -28,15 +28,6 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
 std::vector<Warning> DenoisingRun::FindOwnWarnings() const
 {
   std::vector<Warning> warnings;
-  const Index coincident = this->Domain->Diagnostics().CoincidentBoundaryPoints;
-  if (coincident > 0)
-  {
-    Sentence text;
-    text << coincident
-         << " boundary points coincide with others and may come apart (to join them, set "
-         << Word::Setting("MergeCoincidentPoints") << ")";
-    warnings.push_back({ text, this->SurfaceVersion });
-  }
   if (this->Found.Type == SurfaceType::Automatic && this->Found.MaximumDisplacement == 0.0)
   {
     Sentence text("no noise was found, so that no point moves (to remove some, set ");

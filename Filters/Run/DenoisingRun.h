@@ -25,7 +25,7 @@ class DenoisingRun : public SurfaceRun
 {
 public:
   explicit DenoisingRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel, "have no normal")
+    : SurfaceRun(parallel, "have no normal", " and may come apart")
   {
   }
 

@@ -43,7 +43,7 @@ class DerivativesRun : public SurfaceRun
 {
 public:
   explicit DerivativesRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel, "have no derivatives")
+    : SurfaceRun(parallel, "have no derivatives", " and are not their neighbours")
   {
   }
 

@@ -30,7 +30,7 @@ class DirectionFieldRun : public SurfaceRun
 {
 public:
   explicit DirectionFieldRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel, "get no direction")
+    : SurfaceRun(parallel, "get no direction", ", across which directions do not continue")
   {
   }
 

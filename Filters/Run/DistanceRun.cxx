@@ -271,8 +271,8 @@ void DistanceRun::RequireSource(const std::vector<const DistanceRun*>& runs)
   const Sentence array(Word::Array("SourceArray"));
   if (all.Given == 0)
   {
-    throw InputError(
-      Sentence(array) << " is 0 at all points; allowed: a nonzero point of the surface");
+    throw InputError(Sentence(array)
+      << " marks no point; allowed: one or more, with a number other than 0 and NaN");
   }
   throw InputError(Sentence("all ")
     << all.Given << " nonzero points of " << array << " are where " << mask

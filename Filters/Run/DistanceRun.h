@@ -42,7 +42,7 @@ class DistanceRun : public SurfaceRun
 {
 public:
   explicit DistanceRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel, "are barriers")
+    : SurfaceRun(parallel, "are barriers", ", across which no path leads")
   {
   }
 

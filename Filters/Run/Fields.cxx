@@ -3,6 +3,7 @@
 #include "Run/Fields.h"
 
 #include "Core/Foundation/Random.h"
+#include "Core/Statistics/MeasuredVertices.h"
 #include "Core/Surface/TangentVectors.h"
 
 #include <algorithm>
@@ -38,6 +39,27 @@ std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields
   }
   std::replace(seeds.begin(), seeds.end(), several, none);
   return seeds;
+}
+
+/// A vertex of merged points is in between if all of them are.
+MeasuredVertices FindMeasured(const Surface& surface, const Fields& fields)
+{
+  const std::vector<Index>& rows = surface.Mesh().InputVertex();
+  Points points(static_cast<Eigen::Index>(rows.size()), 3);
+  for (std::size_t v = 0; v < rows.size(); ++v)
+  {
+    points.row(static_cast<Eigen::Index>(v)) = surface.Points().row(rows[v]);
+  }
+  Flags isBetween = Flags::Constant(points.rows(), true);
+  for (std::size_t i = 0; i < fields.Between.size(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0 && !fields.Between[i])
+    {
+      isBetween[v] = false;
+    }
+  }
+  return FindMeasuredVertices(surface.SharedAssembler()->Pattern(), points, std::move(isBetween));
 }
 
 } // namespace
@@ -261,6 +283,12 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   if (!fields.FidelityFactors.Values.empty())
   {
     data.FidelityFactors = MakeFidelityFactors(surface, fields);
+  }
+  const bool anyBetween = std::any_of(
+    fields.Between.begin(), fields.Between.end(), [](char between) { return between != 0; });
+  if (anyBetween && surface.Mesh().GetReduction().IsSerial())
+  {
+    data.Measured = std::make_shared<const MeasuredVertices>(FindMeasured(surface, fields));
   }
   return data;
 }

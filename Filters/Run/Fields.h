@@ -56,6 +56,11 @@ struct Fields
   std::shared_ptr<const SourceShapes> Sources;
   Located<std::vector<double>> Speeds; ///< per point or cell; may be empty
   std::vector<double> StartTimes; ///< per point; may be empty
+  /// Of a surface whose edges were bisected. Per point, nonzero: its values were interpolated, and
+  /// are no measurements. Per cell: the cell of the given surface that it was cut from. Both may be
+  /// empty.
+  std::vector<char> Between;
+  std::vector<Index> GivenCells;
   /// The cell of each input triangle, below NumberOfCells, if one of the arrays is on cells.
   std::vector<Index> Cells;
   Index NumberOfCells = 0;

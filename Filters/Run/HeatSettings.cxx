@@ -14,10 +14,28 @@
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+LinearDiffusion::Scheme SchemeOf(TimeIntegrator integrator)
+{
+  switch (integrator)
+  {
+    case TimeIntegrator::Exponential:
+      return LinearDiffusion::Scheme::Exponential;
+    case TimeIntegrator::SecondOrder:
+      return LinearDiffusion::Scheme::SDIRK2;
+    default:
+      return LinearDiffusion::Scheme::BackwardEuler;
+  }
+}
+
+} // namespace
+
 void HeatSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
-  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false });
+  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false, true });
   visitor.Choice({ "Mode", "",
                    "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the limit for "
                    "infinite time, in one solve. It is the harmonic function of the fixed or "
@@ -126,12 +144,10 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   UnitSystem timeUnits = inputs.Units;
   timeUnits.Natural = !traits.AbsoluteTime;
   const double fidelityUnit = timeUnits.ToCore(1.0, -2.0, 0.0);
-  const bool secondOrder = this->TimeIntegrator == SurfaceDiffusion::TimeIntegrator::SecondOrder;
   LinearDiffusion::Settings settings;
   settings.TimeStep = timeUnits.ToCore(traits.TimeStep, traits.Time);
   settings.Fidelity = this->FidelityWeight * fidelityUnit;
-  settings.TimeScheme =
-    secondOrder ? LinearDiffusion::Scheme::SDIRK2 : LinearDiffusion::Scheme::BackwardEuler;
+  settings.TimeScheme = SchemeOf(this->TimeIntegrator);
 
   const double h = inputs.Units.CoreEdgeLength();
   SolverTask task;
@@ -139,7 +155,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.DiffusionNumber = this->LargestDiffusivity() * settings.ImplicitStep() / (h * h);
   task.Anisotropy = this->Anisotropy();
-  const double solvesPerStep = secondOrder ? 2.0 : 1.0;
+  const double solvesPerStep = settings.NumberOfSolves();
   if (this->Mode == HeatMode::SteadyState)
   {
     settings.TimeScheme = LinearDiffusion::Scheme::SteadyState;

@@ -38,6 +38,7 @@ struct ModelInputs
   const CellTransfer* Cells = nullptr; ///< that has made the data; null if they are on points
   Index LargestCellSeed = 0; ///< of seeds on cells, which vertices between cells do not have
   KnownValues Known = {}; ///< of models that use them
+  std::vector<Index> GivenCells = {}; ///< as in Fields
 };
 
 /// A run on one surface at its current step.

@@ -238,7 +238,7 @@ double MumfordShahSettings::UseFoundScales(
   result.AddNumber("EstimatedNoiseLevel",
     this->NoiseLevel > 0.0 ? this->NoiseLevel
                            : inputs.Units.FromCore(reference.Noise, 0.0, 1.0) /
-        (inputs.Cells ? inputs.Cells->NoiseGain() : 1.0));
+        (inputs.Cells ? inputs.Cells->NoiseGain(inputs.GivenCells) : 1.0));
   const MumfordShahSettings defaults;
   WarnOfUnused("EdgeThreshold", this->EdgeThreshold, defaults.EdgeThreshold, result);
   WarnOfUnused("SmoothingLength", this->SmoothingLength, defaults.SmoothingLength, result);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -152,8 +153,64 @@ private:
   std::vector<Index> Before; ///< per point: that before it at the same vertex
 };
 
+/// Of the cells that were cut from one, only the value of the cell nearest to its middle is kept.
+void LeaveOneOfEach(
+  const Surface& surface, const Fields& fields, std::vector<SurfacePoint>& middles)
+{
+  struct Given
+  {
+    Eigen::RowVector3d Moment = Eigen::RowVector3d::Zero();
+    double Area = 0.0;
+    double Least = std::numeric_limits<double>::infinity();
+    Index Nearest = -1;
+  };
+  std::map<Index, Given> ofCells;
+  const TriangleMesh& mesh = surface.InputMesh();
+  const auto pointOf = [&](Index vertex)
+  { return surface.Points().row(mesh.InputVertex()[static_cast<std::size_t>(vertex)]); };
+  for (Index t = 0; t < mesh.NumberOfTriangles() && !fields.GivenCells.empty(); ++t)
+  {
+    const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
+    const Index cell = fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))];
+    Given& given = ofCells[fields.GivenCells[static_cast<std::size_t>(cell)]];
+    const double area = mesh.Shapes()[static_cast<std::size_t>(t)].Area();
+    for (int a = 0; a < 3; ++a)
+    {
+      given.Moment += area / 3.0 * pointOf(mesh.TriangleVertices()(t, a));
+    }
+    given.Area += area;
+  }
+  const auto forEach = [&](const auto& f)
+  {
+    for (std::size_t c = 0; c < fields.GivenCells.size(); ++c)
+    {
+      if (middles[c].Vertices[0] >= 0)
+      {
+        f(static_cast<Index>(c), ofCells[fields.GivenCells[c]]);
+      }
+    }
+  };
+  forEach(
+    [&](Index cell, Given& given)
+    {
+      const std::array<Index, 3>& corners = middles[static_cast<std::size_t>(cell)].Vertices;
+      const Eigen::RowVector3d middle =
+        (pointOf(corners[0]) + pointOf(corners[1]) + pointOf(corners[2])) / 3.0;
+      const double distance = (middle - given.Moment / given.Area).norm();
+      given.Nearest = distance < given.Least ? cell : given.Nearest;
+      given.Least = std::min(given.Least, distance);
+    });
+  forEach(
+    [&](Index cell, const Given& given)
+    {
+      middles[static_cast<std::size_t>(cell)].Vertices[0] =
+        given.Nearest == cell ? middles[static_cast<std::size_t>(cell)].Vertices[0] : -1;
+    });
+}
+
 /// The middle of the largest triangle of each cell, of the first one among triangles of equal size,
-/// as those of a square; the vertices of cells without one are -1.
+/// as those of a square; the vertices of cells without one are -1. Of the cells that were cut from
+/// one, those of the others are -1, too.
 std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& fields)
 {
   constexpr double equal = 1e-9; // round-off must not choose
@@ -178,6 +235,7 @@ std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& f
       }
     }
   }
+  LeaveOneOfEach(surface, fields, middles);
   return middles;
 }
 
@@ -300,6 +358,7 @@ KnownValues FindKnownValues(
   {
     const auto row = static_cast<Eigen::Index>(i);
     if (IsSet(fields.Missing, i) || fields.Data.Values.row(row).hasNaN() ||
+      (!fields.Data.OnCells && IsSet(fields.Between, i)) ||
       (inpaint && IsSet(fields.Mask.Values, i)))
     {
       continue;

@@ -41,7 +41,7 @@ class RandomFieldRun : public SurfaceRun
 {
 public:
   explicit RandomFieldRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel, "have no field")
+    : SurfaceRun(parallel, "have no field", ", across which the field does not continue")
   {
   }
 

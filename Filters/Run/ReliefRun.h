@@ -37,7 +37,7 @@ class ReliefRun : public SurfaceRun
 {
 public:
   explicit ReliefRun(const ParallelFor& parallel)
-    : SurfaceRun(parallel, "have no normal")
+    : SurfaceRun(parallel, "have no normal", nullptr)
   {
   }
 

@@ -207,6 +207,7 @@ void Run::MakeModel(
     inputs.LargestCellSeed =
       *std::max_element(fields.Seeds.Values.begin(), fields.Seeds.Values.end());
   }
+  inputs.GivenCells = fields.GivenCells;
   const ModelTraits wanted = this->Settings->DescribeModel();
   if (wanted.UsesKnownValues)
   {

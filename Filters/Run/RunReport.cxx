@@ -53,7 +53,7 @@ std::string DescribeUndetermined(long long components)
 {
   return std::to_string(components) +
     (components == 1 ? " connected component has" : " connected components have") +
-    " no known value: results are NaN there, or the input if that is an array of integers";
+    " no known value: results are NaN there, labels 0, and arrays of integers the input";
 }
 
 Sentence DescribeUnsettledSteps(const Shortfalls& found)

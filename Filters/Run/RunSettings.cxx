@@ -198,7 +198,7 @@ void VisitTimeIntegrator(
   SettingVisitor& visitor, TimeIntegrator& integrator, const std::vector<bool>& allowed)
 {
   visitor.Choice({ "TimeIntegrator", "", "The time integrator." }, integrator,
-    { "FirstOrder", "SecondOrder", "Implicit" }, allowed);
+    { "FirstOrder", "SecondOrder", "Implicit", "Exponential" }, allowed);
 }
 
 void VisitResultOnCells(SettingVisitor& visitor, bool& onCells)

@@ -37,7 +37,8 @@ enum class TimeIntegrator
 {
   FirstOrder,
   SecondOrder,
-  Implicit
+  Implicit,
+  Exponential
 };
 
 /// The properties of the input arrays that the settings have to agree with.

@@ -67,11 +67,13 @@ std::vector<Warning> SurfaceRun::FindAllWarnings(
   const std::vector<const SurfaceRun*>& runs, const std::vector<std::string>& blocks)
 {
   Index degenerate = 0;
+  Index coincident = 0;
   Fingerprint surfaces, causes;
   BlockSentences ofRuns;
   for (std::size_t r = 0; r < runs.size(); ++r)
   {
     degenerate += runs[r]->Domain->Diagnostics().DegenerateTriangles;
+    coincident += runs[r]->Domain->Diagnostics().CoincidentBoundaryPoints;
     surfaces.Add(runs[r]->SurfaceVersion);
     for (const Warning& warning : runs[r]->FindOwnWarnings())
     {
@@ -90,6 +92,14 @@ std::vector<Warning> SurfaceRun::FindAllWarnings(
   {
     Sentence text;
     text << degenerate << " triangles of zero area " << runs.front()->OfDegenerate;
+    warnings.push_back({ text, surfaces });
+  }
+  const char* const ofCoincident = runs.empty() ? nullptr : runs.front()->OfCoincident;
+  if (coincident > 0 && ofCoincident)
+  {
+    Sentence text;
+    text << coincident << " boundary points coincide with others" << ofCoincident
+         << " (to join them, set " << Word::Setting("MergeCoincidentPoints") << ")";
     warnings.push_back({ text, surfaces });
   }
   return warnings;

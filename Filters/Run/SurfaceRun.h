@@ -39,21 +39,24 @@ public:
   /// The warnings that hold.
   std::vector<Warning> FindWarnings() const { return FindAllWarnings({ this }, { "" }); }
   /// The warnings about the surfaces of several runs, each with the name of its block. All
-  /// triangles of zero area are counted together.
+  /// triangles of zero area are counted together, and so are coincident points.
   static std::vector<Warning> FindAllWarnings(
     const std::vector<const SurfaceRun*>& runs, const std::vector<std::string>& blocks);
   /// The numbers of several runs, each as a matrix, with the MeanEdgeLength of all.
   static std::map<std::string, Values> FindAllNumbers(const std::vector<const SurfaceRun*>& runs);
 
 protected:
-  /// ofDegenerate: what becomes of triangles of zero area, such as "have no normal".
-  SurfaceRun(const ParallelFor& parallel, const char* ofDegenerate)
+  /// ofDegenerate: what becomes of triangles of zero area, such as "have no normal". ofCoincident:
+  /// what follows if points of the boundary coincide with others, which they are not merged with, such
+  /// as " and may come apart"; null: there is no warning.
+  SurfaceRun(const ParallelFor& parallel, const char* ofDegenerate, const char* ofCoincident)
     : Parallel(parallel)
     , OfDegenerate(ofDegenerate)
+    , OfCoincident(ofCoincident)
   {
   }
 
-  /// Those that are not about triangles of zero area.
+  /// Those that are not about triangles of zero area or coincident points.
   virtual std::vector<Warning> FindOwnWarnings() const = 0;
 
   /// Make the surface unless it is kept. Returns whether the result has to be computed.
@@ -79,6 +82,7 @@ protected:
 
 private:
   const char* OfDegenerate;
+  const char* OfCoincident;
   SettingsSnapshot SurfaceSettings, ModelSettings;
   bool HasResult = false;
 };

@@ -278,6 +278,12 @@ Fields InputFields::Read() const
     fields.MakeIds = [ids = *this->Ids]
     { return std::vector<std::int64_t>(ids.data(), ids.data() + ids.size()); };
   }
+  fields.Between = ReadFlags(this->Between);
+  if (this->GivenFaces)
+  {
+    fields.GivenCells.assign(
+      this->GivenFaces->data(), this->GivenFaces->data() + this->GivenFaces->size());
+  }
   fields.Mask = { ReadFlags(this->Mask.Values), this->Mask.OnCells };
   fields.Fixed = { ReadFlags(this->Fixed.Values), this->Fixed.OnCells };
   fields.FidelityFactors.OnCells = this->FidelityFactors.OnCells;
@@ -373,6 +379,8 @@ Fingerprint InputFields::Version() const
   AddArray(version, this->Speeds.Values);
   AddArray(version, this->StartTimes);
   AddArray(version, this->Ids);
+  AddArray(version, this->Between);
+  AddArray(version, this->GivenFaces);
   const auto add = [&](const auto& numbers)
   {
     const auto count = static_cast<std::size_t>(numbers.size());

@@ -123,6 +123,8 @@ public:
   Located<std::optional<FactorArray>> Speeds; ///< of distances
   std::optional<FactorArray> StartTimes; ///< of distances, per point
   std::optional<LongArray> Ids; ///< per point, for random numbers
+  std::optional<FlagArray> Between; ///< as in Fields
+  std::optional<LongArray> GivenFaces; ///< GivenCells of Fields
 
   void SetSamples(const DoubleArray& places, const DoubleArray& values,
     const std::optional<FactorArray>& weights, const std::string& name);

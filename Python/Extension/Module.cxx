@@ -157,6 +157,14 @@ NB_MODULE(_core, m)
     .def(
       "set_ids", [](InputFields& self, const LongArray& ids) { self.Ids = ids; }, "ids"_a)
     .def(
+      "set_measured",
+      [](InputFields& self, const FlagArray& between, const LongArray& faces)
+      {
+        self.Between = between;
+        self.GivenFaces = faces;
+      },
+      "between"_a, "faces"_a)
+    .def(
       "set_names",
       [](InputFields& self, const std::string& data, const std::string& block)
       {

@@ -85,7 +85,7 @@ def divergence(surface: SurfaceLike, vectors: ArrayLike, **others: Any) -> NDArr
     >>> bool(abs(found + 2 * z).mean() < 0.01)
     True
     """
-    return derivatives(surface, vectors, quantity="Divergence", **others)
+    return derivatives(surface, vectors, quantity="Divergence", _name="vectors", **others)
 
 
 @_with_arguments
@@ -114,7 +114,7 @@ def curl(surface: SurfaceLike, vectors: ArrayLike, **others: Any) -> NDArray[np.
     >>> bool(abs(curl(surface, spin) - 2 * surface.points[:, 2]).max() < 0.02)
     True
     """
-    return derivatives(surface, vectors, quantity="Curl", **others)
+    return derivatives(surface, vectors, quantity="Curl", _name="vectors", **others)
 
 
 @_with_arguments

@@ -279,7 +279,7 @@ def _prepare(
             raise ValueError(f"sources is {shorten(sources)}; allowed: finite coordinates, (k, 3)")
     else:
         rows = _as_rows(given, sources)
-    surface, carried = take_along(given, "distance", refine_to, limit, {
+    surface, carried, _ = take_along(given, "distance", refine_to, limit, {
         "mask": mask, "speed": speeds.speed, "directions": speeds.directions})
     fronts = _make_fronts(surface, speeds._replace(speed=carried["speed"],
                                                    directions=carried["directions"]), carried["mask"])

@@ -302,7 +302,7 @@ def smooth_to_fwhm(
 
     def smooth(maps: Any, width: float, **keywords: Any) -> NDArray[Any]:
         result: NDArray[Any] = heat(surface, maps, fwhm=width, mask=mask, mask_mode="Exclude",
-                                    **keywords)
+                                    time_integrator="Exponential", number_of_time_steps=1, **keywords)
         return result
 
     found = measure(noise)

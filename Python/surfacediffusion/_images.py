@@ -16,7 +16,7 @@ from ._surface import Surface, as_surface
 
 
 def smooth_img(
-    img: Any, fwhm: float, *, mask_img: Any = None, number_of_time_steps: int = 3,
+    img: Any, fwhm: float, *, mask_img: Any = None, number_of_time_steps: int = 1,
     progress: Any = None,
 ) -> Any:
     """Smooth surface images of nilearn, both hemispheres, by a given width.
@@ -35,8 +35,9 @@ def smooth_img(
     mask_img : nilearn.surface.SurfaceImage, optional
         The region of interest, as nilearn has it: nonzero is inside. Nothing flows across its
         boundary, and outside the result is 0. For instance the cortex without the medial wall.
-    number_of_time_steps : int, default 3
-        As for :func:`heat`; 3 are within about 0.1 % of the solution at 10 mm on a cortex.
+    number_of_time_steps : int, default 1
+        As for :func:`heat` with the time integrator "Exponential", of which one step is within 0.5 % of
+        the exact result for white noise, and nearer for other data.
     progress : bool or callable, optional
         As for :func:`heat`.
 
@@ -144,5 +145,5 @@ def _smooth_part(surface: Surface, values: NDArray[Any], fwhm: float, outside: A
     for group in groups.values():
         result[:, group] = heat(
             surface, columns[:, group], fwhm=fwhm, mask=outside, mask_mode="Exclude",
-            number_of_time_steps=steps, progress=progress)
+            time_integrator="Exponential", number_of_time_steps=steps, progress=progress)
     return result.reshape(values.shape)

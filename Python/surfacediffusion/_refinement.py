@@ -214,8 +214,11 @@ def with_refinement(function: F) -> F:
         bound.apply_defaults()
         given = dict(bound.arguments)
         properties = given.pop("properties")
-        surface, given = take_along(given.pop("surface"), name, refine_to, maximum_number_of_triangles,
-                                    given, properties.get("feature_size", 0.0))
+        surface, given, refined = take_along(given.pop("surface"), name, refine_to,
+                                             maximum_number_of_triangles, given,
+                                             properties.get("feature_size", 0.0))
+        if name in ESTIMATING and refined is not None:
+            properties["_refined"] = refined
         return function(surface, **given, **properties)
 
     return refining  # type: ignore[return-value]
@@ -236,14 +239,18 @@ def document_keywords(function: str) -> str:
     special = (", or -1: `feature_size` / 8 if that is less than 6 mean edge lengths, with a warning, and "
                "otherwise 0") if automatic else ""
     text = ("Edges that are longer are bisected first, and the data go along: the result belongs to "
-            "the points and faces of ``refine(surface, refine_to).surface``. 0: the surface stays as it "
-            f"is{special}.")
+            "the points and faces of ``refine(surface, refine_to).surface``. Values that are interpolated "
+            "on the way are no measurements: interpolation and estimates of noise do not count them. 0: "
+            f"the surface stays as it is{special}.")
     lines = textwrap.fill(text, 92, initial_indent="    ", subsequent_indent="    ")
     return (f"refine_to : float, 0 or more{' or -1' * automatic}, in coordinates, default "
             f"{-1.0 if automatic else 0.0}\n{lines}\n"
             f"maximum_number_of_triangles : int, 1 or more, default {MAXIMUM_TRIANGLES}\n"
             "    Refinement stops before there are more, with a warning.")
 
+
+#: The functions that ask which of the data were measured.
+ESTIMATING = ("heat", "intrinsic_tv", "mumford_shah", "tensor_diffusion", "interpolate")
 
 #: The arguments with rows of points or faces. The first are where on_faces says, if it is given.
 _DATA = ("values", "terms", "vectors")
@@ -253,12 +260,13 @@ _ROWS = ("initial", "mask", "roi", "directions", "fixed", "fidelity", "seeds", "
 def take_along(
     surface: Any, function: str, refine_to: Any, limit: Any, given: dict[str, Any],
     feature_size: Any = 0.0,
-) -> tuple[Surface, dict[str, Any]]:
-    """The surface with shorter edges, if that is asked for, and the arguments of a function for it."""
+) -> tuple[Surface, dict[str, Any], RefinedSurface | None]:
+    """The surface with shorter edges, if that is asked for, the arguments of a function for it, and the
+    refinement."""
     surface = as_surface(surface)
     refined = refine_as_asked([surface], function, refine_to, limit, feature_size)
     if refined is None:
-        return surface, given
+        return surface, given, None
     (fine,) = refined
     n, m = surface.n_points, surface.n_faces
     carried = dict(given)
@@ -282,7 +290,7 @@ def take_along(
             carried[name] = fine.at_points(array)
         if name in _DATA and "on_faces" in given:
             carried["on_faces"] = on_faces
-    return fine.surface, carried
+    return fine.surface, carried, fine
 
 
 def as_length(name: str, value: Any, zero: bool = False) -> float:

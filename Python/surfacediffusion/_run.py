@@ -7,7 +7,7 @@ from __future__ import annotations
 import sys
 import warnings
 from pathlib import Path
-from typing import Any, Callable, Generic, Iterator, Mapping, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Callable, Generic, Iterator, Mapping, TypeVar, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from ._settings import convert_all, settings_of, shorten, spell
 from ._surface import (
     Surface, as_directions, as_factors, as_flags, as_labels, as_rows, data_components, find_place,
 )
+
+if TYPE_CHECKING:
+    from ._refinement import RefinedSurface
 
 Progress = Union[None, bool, Callable[[float], Any]]
 
@@ -116,8 +119,9 @@ def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
 class Input:
     """The input of a run on one surface. data_on_faces: where the data are. on_faces: where the
     directions are; None: by their number. Masks and the like are on points or faces by their
-    number. samples: places, values and weights in place of data. integers: the data were, so that results keep them where nothing determines a value, in
-    place of NaN."""
+    number. samples: places, values and weights in place of data. integers: the data were, so that
+    results keep them where nothing determines a value, in place of NaN. refined: the refinement that has
+    made the surface, between whose given points nothing was measured."""
 
     def __init__(
         self,
@@ -136,6 +140,7 @@ class Input:
         data_are_terms: bool = False,
         integers: bool = False,
         samples: tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None] | None = None,
+        refined: RefinedSurface | None = None,
     ) -> None:
         n, m = surface.n_points, surface.n_faces
         self.surface, self.data, self.integers = surface, data, integers
@@ -161,6 +166,9 @@ class Input:
             places)
         if samples is not None:
             self.core.set_samples(*samples)
+        if refined is not None:
+            between = np.arange(n) >= n - len(refined.parents)
+            self.core.set_measured(between.astype(np.uint8), refined.faces.astype(np.int64))
 
     def write(self, run: Any, block: int, output: NDArray[Any], first: int) -> None:
         """Write the columns of the result of the data of a block, from column `first` on."""

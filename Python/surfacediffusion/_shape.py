@@ -136,7 +136,7 @@ def relief(
     >>> result.open_edges, result.crossing_triangles, round(result.smallest_wall, 1)
     (0, 0, 21.0)
     """
-    surface, rows = take_along(surface, "relief", refine_to, maximum_number_of_triangles,
+    surface, rows, _ = take_along(surface, "relief", refine_to, maximum_number_of_triangles,
                                {"values": values, "mask": mask})
     array, mask = as_numbers("values", rows["values"]), rows["mask"]
     n = surface.n_points

@@ -72,7 +72,7 @@ from ._meshes import find_polydata
 from ._models import (
     ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
 )
-from ._refinement import RefinedSurface, keywords_of, refine_as_asked
+from ._refinement import ESTIMATING, RefinedSurface, keywords_of, refine_as_asked
 from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
     TensorDiffusionResult, TextureResult,
@@ -232,7 +232,8 @@ def interpolate(
         result, outputs = interpolate_with_outputs(
             block.surface, values, places, on_faces if points is None else None,
             block.find("mask", mask, faces=True)[0], block.find("roi", roi, faces=True)[0],
-            block.find("direction", direction, faces=True)[0], weights, progress, dict(properties), None)
+            block.find("direction", direction, faces=True)[0], weights, progress,
+            {**properties, "_refined": block.refined}, None)
         results.append(result)
         block.name = name
         block.computed = points is not None
@@ -533,6 +534,7 @@ class _Block:
         if not self.empty:
             self.surface = Surface(mesh.points, faces)
         self.given: Input | None = None
+        self.refined: RefinedSurface | None = None  #: that has made the mesh from the input
         self.name = ""  #: of the data
         self.computed = False  #: the data are computed normals, of no array
 
@@ -602,7 +604,7 @@ class _Block:
                     attributes.SetActiveAttribute(active.GetName(), kind)
         mesh.field_data.update(given.field_data)
         block = _Block(mesh)
-        block.origin = self.origin
+        block.origin, block.refined = self.origin, fine
         return block
 
     def fresh(self) -> _Block:
@@ -747,7 +749,8 @@ def _prepare(
     block.given = Input(
         surface, data, data_on_faces=on_faces, directions=directions,
         directions_name="direction", on_faces=directed_faces, integers=integers,
-        rates=block.find("rates", rates, points=False, faces=True)[0], **marks)
+        rates=block.find("rates", rates, points=False, faces=True)[0],
+        refined=block.refined if function in ESTIMATING else None, **marks)
 
 
 def _write_result(block: _Block, output: Output, name: str) -> None:

@@ -133,6 +133,12 @@ inline std::vector<ModelKind> AllModelKinds()
         s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
         s.FidelityWeight = 0.5;
       }),
+    MakeKind<Heat>("HeatExponential", 2,
+      [](Heat& s)
+      {
+        s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential;
+        s.FidelityWeight = 0.5;
+      }),
     MakeKind<Heat>("HeatDirected", 2,
       [](Heat& s)
       {

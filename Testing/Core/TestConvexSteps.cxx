@@ -91,7 +91,7 @@ TEST(ConvexSteps, LinearDiffusionBringsStatesNoFartherApart)
   const PointData one = MaskedNoise(mesh, 1);
   PointData other = MaskedNoise(mesh, 2);
   other.Given = one.Given; // fidelity pulls both to the same data
-  for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2 })
+  for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2, Scheme::Exponential })
   {
     for (const double timeStep : { 1e-4, 1e-2, 1.0, 100.0 })
     {

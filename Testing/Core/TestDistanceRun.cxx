@@ -471,7 +471,7 @@ TEST(DistanceRun, NamesWhatIsNotAllowed)
   SurfaceData data;
   expect(data, "Data is not set; allowed: ");
   data.Data.Values = Values::Zero(s.NumberOfVertices(), 1);
-  expect(data, "Data is 0 at all points; allowed: a nonzero point of the surface");
+  expect(data, "Data marks no point; allowed: one or more, with a number other than 0 and NaN");
   data.Data.Values(3, 0) = 1.0;
   data.Mask.Values.assign(static_cast<std::size_t>(s.NumberOfVertices()), 0);
   data.Mask.Values[3] = 1;

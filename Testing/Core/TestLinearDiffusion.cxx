@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/ExponentialSeries.h"
 #include "Core/Operators/DirichletEnergy.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
@@ -45,6 +46,21 @@ double HarmonicError(
   const Values exact = std::exp(-degree * (degree + 1) * time / (radius * radius)) * start;
   const Values u = Diffuse(assembler, PointData::FromValues(start), time, steps, 0.0, scheme);
   return RootMeanSquare(mesh, u - exact) / RootMeanSquare(mesh, exact);
+}
+
+/// p(1/(1 + s z)) of ExponentialSeries.
+double SeriesAt(double z)
+{
+  const double y = 1.0 / (1.0 + ExponentialSeries::Step * z);
+  double sum = 0.0;
+  for (int k = 0; k <= ExponentialSeries::Degree; ++k)
+  {
+    // Continued beyond [-1, 1], for derivatives at z = 0.
+    const double w = 2.0 * y - 1.0;
+    const double term = w <= 1.0 ? std::cos(k * std::acos(w)) : std::cosh(k * std::acosh(w));
+    sum += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * term;
+  }
+  return sum;
 }
 
 } // namespace
@@ -133,6 +149,92 @@ TEST(LinearDiffusion, OneStepMultipliesAnEigenvectorByTheSchemesFactor)
     Diffuse(assembler, PointData::FromValues(start), dt, 1, 0.0, Scheme::SDIRK2);
   const double factor = (1.0 - (1.0 - 2.0 * g) * z) / ((1.0 + g * z) * (1.0 + g * z));
   EXPECT_LT((second - factor * start).cwiseAbs().maxCoeff(), 1e-15);
+  const Values exponential =
+    Diffuse(assembler, PointData::FromValues(start), dt, 1, 0.0, Scheme::Exponential);
+  EXPECT_LT((exponential - SeriesAt(z) * start).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(LinearDiffusion, SeriesIsTheBestForWhiteNoiseOfThoseOfTheRightVariance)
+{
+  EXPECT_NEAR(SeriesAt(0.0), 1.0, 1e-15);
+  EXPECT_NEAR((SeriesAt(1e-4) - SeriesAt(-1e-4)) / 2e-4, -1.0, 1e-7);
+  EXPECT_LT(std::abs(SeriesAt(1e12)), 1e-10);
+  // 2 int (p - exp(-z))^2 dz is the relative error; with z = (1/y - 1)/s, dz = dy/(s y^2).
+  const auto squareError = [](double perturbation, int power)
+  {
+    constexpr int intervals = 20000;
+    double sum = 0.0;
+    for (int i = 0; i < intervals; ++i)
+    {
+      const double y = (i + 0.5) / intervals;
+      const double z = (1.0 / y - 1.0) / ExponentialSeries::Step;
+      const double p = SeriesAt(z) + perturbation * y * std::pow(1.0 - y, power);
+      sum += 2.0 * std::pow((p - std::exp(-z)) / y, 2) / ExponentialSeries::Step / intervals;
+    }
+    return sum;
+  };
+  const double least = squareError(0.0, 2);
+  EXPECT_NEAR(std::sqrt(least), 0.0046, 0.0001);
+  for (const int power : { 2, 3, 4, 5 }) // those of degree 6 that keep the conditions
+  {
+    EXPECT_GT(squareError(1e-4, power), least) << power;
+    EXPECT_GT(squareError(-1e-4, power), least) << power;
+  }
+  for (double z = 0.0; z < 100.0; z += 0.01)
+  {
+    EXPECT_LT(std::abs(SeriesAt(z) - std::exp(-z)), 0.0014) << z;
+  }
+}
+
+TEST(LinearDiffusion, OneExponentialStepSmoothsWhiteNoiseExactlyEnoughAtAnyWidth)
+{
+  const auto assembler = MakeAssembler(Icosphere(5));
+  const TriangleMesh& mesh = assembler->Mesh();
+  const PointData data = PointData::FromValues(Noise(mesh, 2));
+  for (const double edges : { 3.0, 8.0, 20.0 })
+  {
+    const double width = edges * mesh.MeanEdgeLength() * mesh.LengthUnit();
+    const double time = width * width / (16.0 * std::log(2.0));
+    const Values exact = Diffuse(assembler, data, time, 200);
+    const auto error = [&](int steps, Scheme scheme)
+    {
+      return RootMeanSquare(mesh, Diffuse(assembler, data, time, steps, 0.0, scheme) - exact) /
+        RootMeanSquare(mesh, exact);
+    };
+    EXPECT_LT(error(1, Scheme::Exponential), 0.006) << edges;
+    if (edges > 3.0) // with as many solves
+    {
+      EXPECT_GT(error(3, Scheme::SDIRK2), 0.03) << edges;
+    }
+  }
+}
+
+/// The steady state of fidelity and fixed values is not computed: the series is one of steps that
+/// lead to it.
+TEST(LinearDiffusion, ExponentialStepsAgreeWithManyOfSecondOrderWithFidelityAndFixedValues)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const TriangleMesh& mesh = assembler->Mesh();
+  PointData data = PointData::FromValues(Noise(mesh, 3));
+  data.Start = Noise(mesh, 3, 8).array() + 100.0;
+  for (Index i = 0; i < mesh.NumberOfVertices(); i += 7)
+  {
+    data.Fixed[i] = i % 2 == 0;
+    data.Missing[i] = i % 3 == 0;
+  }
+  for (const double lambda : { 0.0, 4.0 })
+  {
+    for (const int steps : { 1, 2 })
+    {
+      const Values exact = Diffuse(assembler, data, 0.1, 2000, lambda);
+      const Values u = Diffuse(assembler, data, 0.1, steps, lambda, Scheme::Exponential);
+      EXPECT_LT((u - exact).cwiseAbs().maxCoeff(), 0.2) << lambda; // of differences of 100
+      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      {
+        EXPECT_TRUE(!data.Fixed[i] || u.row(i) == data.Start.row(i));
+      }
+    }
+  }
 }
 
 TEST(LinearDiffusion, CosineOnAStripDecaysWithInsulatedEnds)
@@ -187,12 +289,12 @@ TEST(LinearDiffusion, VarianceOfAGaussianGrowsByTwiceTheTimeInEachDirection)
     }
     return sum / total;
   };
-  for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2 })
+  for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2, Scheme::Exponential })
   {
     const Values u = Diffuse(assembler, PointData::FromValues(start), time, 10, 0.0, scheme);
     for (const int axis : { 0, 1 })
     {
-      // Exact even for large steps: both schemes integrate quadratic polynomials exactly.
+      // Exact even for large steps: all schemes integrate quadratic polynomials exactly.
       EXPECT_NEAR(moment(u, axis) - moment(start, axis), 2.0 * time, 1e-6);
     }
   }
@@ -233,7 +335,7 @@ TEST(LinearDiffusion, FidelityLeadsToTheWeightedSteadyState) // (16)
     const Values limit =
       Diffuse(assembler, PointData::FromValues(f), 1.0, 1, lambda, Scheme::SteadyState);
     const double error = RootMeanSquare(mesh, limit - exact) / RootMeanSquare(mesh, exact);
-    for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2 })
+    for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2, Scheme::Exponential })
     {
       const Values u = Diffuse(assembler, PointData::FromValues(f), 20.0, 40, lambda, scheme);
       EXPECT_LT((u - limit).cwiseAbs().maxCoeff(), 1e-11);
@@ -281,8 +383,8 @@ TEST(LinearDiffusion, MeanFollowsTheSchemeOfTheFidelityWithAnySolver)
   const double z = lambda * dt;
   const double g = 1.0 - std::sqrt(0.5);
   const double second = (1.0 - (1.0 - 2.0 * g) * z) / ((1.0 + g * z) * (1.0 + g * z));
-  for (const auto& [scheme, factor] :
-    { std::pair(Scheme::BackwardEuler, 1.0 / (1.0 + z)), std::pair(Scheme::SDIRK2, second) })
+  for (const auto& [scheme, factor] : { std::pair(Scheme::BackwardEuler, 1.0 / (1.0 + z)),
+         std::pair(Scheme::SDIRK2, second), std::pair(Scheme::Exponential, SeriesAt(z)) })
   {
     const std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
     solver->SetLimits({ 0.05, 1000 });
@@ -317,7 +419,7 @@ TEST(LinearDiffusion, FixedEndsOfAStripGiveALineBetweenThem)
   }
   const Values limit = Diffuse(assembler, data, 1.0, 1, 0.0, Scheme::SteadyState);
   EXPECT_LT((limit - exact).cwiseAbs().maxCoeff(), 1e-12);
-  for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2 })
+  for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2, Scheme::Exponential })
   {
     const Values u = Diffuse(assembler, data, 200.0, 100, 0.0, scheme);
     EXPECT_LT((u - exact).cwiseAbs().maxCoeff(), 1e-9);

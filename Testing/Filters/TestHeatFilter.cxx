@@ -97,7 +97,8 @@ TEST(HeatFilter, TotalIsConservedByEverySolverAndIntegrator)
          vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
     for (const int integrator : { vtkFVMHeatFilter::TIME_INTEGRATOR_FIRST_ORDER,
-           vtkFVMHeatFilter::TIME_INTEGRATOR_SECOND_ORDER })
+           vtkFVMHeatFilter::TIME_INTEGRATOR_SECOND_ORDER,
+           vtkFVMHeatFilter::TIME_INTEGRATOR_EXPONENTIAL })
     {
       for (const double fidelity : { 0.0, 0.1 })
       {

@@ -422,7 +422,7 @@ TEST(DistanceFilter, NamesWhatIsNotAllowed)
   EXPECT_TRUE(
     Has(ErrorOf(filter), "SourceArray is a cell array; allowed: point arrays of 1 component"));
   SetInputArray(filter, 0, "zero");
-  EXPECT_TRUE(Has(ErrorOf(filter), "SourceArray is 0 at all points; allowed: a nonzero point"));
+  EXPECT_TRUE(Has(ErrorOf(filter), "SourceArray marks no point; allowed: one or more"));
   EXPECT_EQ(Result(filter, "Distance"), nullptr);
   SetInputArray(filter, 0, "source");
   SetInputArray(filter, 1, "source");

@@ -130,7 +130,7 @@ class Derivatives(unittest.TestCase):
         surface = plate()
         x = surface.points[:, 0]
         for call, text in (
-            (lambda: sd.curl(surface, x), "values has 1 components; allowed with quantity"),
+            (lambda: sd.curl(surface, x), "vectors has 1 components; allowed with quantity"),
             (lambda: sd.gradient(surface, x[:5]), "values has shape (5,); allowed: "),
             (lambda: sd.gradient(surface, x, smoothing_fwhm=-1), "smoothing_fwhm is -1"),
             (lambda: sd.gradient(surface, np.where(x == 3, np.inf, x)), "values is infinite at point 3"),

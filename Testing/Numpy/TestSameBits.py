@@ -77,6 +77,7 @@ class SameBits(unittest.TestCase):
             ("heat", {"values": self.values}, {"FWHM": 0.2}),
             ("heat", {"values": self.columns.astype(np.float32)}, {"FWHM": 0.1}),
             ("heat", {"values": colours}, {"TimeStep": 2.0, "TimeIntegrator": "FirstOrder"}),
+            ("heat", {"values": nan}, {"FWHM": 0.2, "TimeIntegrator": "Exponential", "NumberOfTimeSteps": 1}),
             ("heat", {"values": nan}, {"FidelityWeight": 2.0, "InitialFill": "Noise", "TimeStep": 1.0,
                                        "RandomSeed": 3, "Solver": "ConjugateGradient"}),
             ("heat", {"values": self.values, "mask": self.mask, "fixed": (self.points[:, 0] > 1.0)

@@ -182,13 +182,13 @@ class RefineTo(unittest.TestCase):
         cases = {
             "heat": dict(values=z, fwhm=0.5, mask=mask, directions=up, fixed=z < -0.8),
             "intrinsic_tv": dict(values=faces, **steps),
-            "tensor_diffusion": dict(values=z, **steps), "mumford_shah": dict(values=z, **steps),
+            "tensor_diffusion": dict(values=z, **steps), "mumford_shah": dict(values=z, edge_threshold=0.3, **steps),
             "harmonic_map": dict(vectors=self.ball.points, **steps),
             "turing_texture": dict(initial=np.column_stack([4 + z, 4 - z]), **steps),
             "segment": dict(values=z), "curvature": dict(mask=mask), "direction_field": {"method": "Smooth"},
             "derivatives": dict(values=z, quantity="Laplacian"),
-            "interpolate": dict(values=np.where(z > 0, z, np.nan), exact=True), "denoise_mesh": {}}
-        self.assertEqual(set(cases), set(sd._functions.__all__))
+            "denoise_mesh": {}}
+        self.assertEqual({*cases, "interpolate"}, set(sd._functions.__all__))
         others = {"gradient": dict(values=z), "relief": dict(values=z, height=0.1),
                   "distance": dict(sources=3, mask=mask, speed=1 + faces)}
         for name, arrays in {**cases, **others}.items():
@@ -200,6 +200,29 @@ class RefineTo(unittest.TestCase):
         found = sd.heat(self.ball, z, fwhm=0.5, roi=z > 0, refine_to=0.25)
         same = sd.heat(self.ball, z, fwhm=0.5, mask=(z <= 0).astype(int), mask_mode="Exclude", refine_to=0.25)
         np.testing.assert_array_equal(found, same)
+
+    def test_values_between_measured_ones_are_no_measurements(self):
+        ball = sd.sphere(4)
+        random, z = np.random.default_rng(0), ball.points[:, 2]
+        noisy = 2 * z + random.normal(scale=0.2, size=len(z))
+        of_faces = 2 * z[ball.triangles].mean(axis=1) + random.normal(scale=0.2, size=ball.n_faces)
+        fine = sd.refine(ball, 0.03)
+        self.assertGreater(fine.surface.n_points, 6 * len(z))
+        for values in (noisy, of_faces):
+            given = sd.interpolate(ball, values, compute_error=True)
+            found = sd.interpolate(ball, values, compute_error=True, refine_to=0.03)
+            self.assertEqual(found.number_of_values, given.number_of_values)
+            self.assertAlmostEqual(float(given.noise_level[0]), 0.2, delta=0.02)
+            self.assertAlmostEqual(float(found.noise_level[0]), 0.2, delta=0.02)
+            self.assertAlmostEqual(float(found.error.mean() / given.error.mean()), 1, delta=0.1)
+            edges = sd.mumford_shah(ball, values, refine_to=0.03)
+            self.assertAlmostEqual(edges.estimated_noise_level, 0.2, delta=0.03)
+        unknown = np.append(noisy, np.full(len(fine.parents), np.nan))
+        np.testing.assert_array_equal(
+            sd.interpolate(ball, noisy, refine_to=0.03).values, sd.interpolate(fine.surface, unknown).values)
+        for function in (sd.heat, sd.intrinsic_tv):
+            smooth = function(ball, noisy, mode="SteadyState", automatic_fidelity=True, refine_to=0.03)
+            self.assertLess(np.sqrt(np.mean((smooth[:len(z)] - 2 * z) ** 2)), 0.1)
 
     def test_values_at_other_places_stay(self):
         places = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])

@@ -3,8 +3,10 @@
 #include "Pieces.h"
 
 #include "vtkFVMHeatFilter.h"
+#include "vtkSurfaceInterpolationFilter.h"
 #include "vtkTuringTextureFilter.h"
 
+#include "vtkCellData.h"
 #include "vtkMPIController.h"
 #include "vtkMultiBlockDataSet.h"
 
@@ -302,6 +304,39 @@ TEST(Pieces, WithoutTheArrayAreOneError)
   heat->Update();
   EXPECT_EQ(messages.Errors.size(), Rank() == 0 ? 1u : 0u);
   EXPECT_EQ(Result(heat), nullptr);
+}
+
+TEST(Pieces, HaveTheMeasuredValuesOfTheWholeSurfaceWhereTheyAreRefined)
+{
+  const int n = 32;
+  for (const bool onCells : { false, true })
+  {
+    const auto makeFilter = [&](vtkPolyData* surface)
+    {
+      const auto value = [](const double* x)
+      { return std::sin(x[0]) + 0.2 * std::sin(1e4 * x[0] + 2e4 * x[1]); }; // as good as random
+      AddPointArray(surface, "f", 1, [&](vtkIdType i, int) { return value(surface->GetPoint(i)); });
+      surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "f", surface->GetNumberOfCells(), 1,
+        [&](vtkIdType i, int) { return value(surface->GetCell(i)->GetBounds()); }));
+      auto filter = vtkSmartPointer<vtkSurfaceInterpolationFilter>::New();
+      filter->SetInputData(surface);
+      filter->SetRefineTo(0.5 / n);
+      SetInputArray(filter, 0, "f", onCells);
+      return filter;
+    };
+    auto pieces = makeFilter(Mine(n));
+    pieces->Update();
+    const auto surface = Strip(0, n, n);
+    auto whole = makeFilter(surface);
+    whole->SetController(nullptr);
+    whole->Update();
+    EXPECT_GT(whole->GetOutput()->GetNumberOfCells(), 3 * surface->GetNumberOfCells());
+    EXPECT_EQ(whole->GetNumberOfValues(),
+      onCells ? surface->GetNumberOfCells() : surface->GetNumberOfPoints());
+    EXPECT_EQ(pieces->GetNumberOfValues(), whole->GetNumberOfValues());
+    EXPECT_NEAR(pieces->GetEffectiveSmoothing(), whole->GetEffectiveSmoothing(),
+      1e-6 * whole->GetEffectiveSmoothing());
+  }
 }
 
 TEST(Pieces, AreRefinedAlikeForTheFeatureSizeOfATexture)

@@ -138,7 +138,7 @@ WORDS = {
     "Quantity": ("Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity"),
     "Units": ("Natural", "Absolute"), "MaskMode": ("Inpaint", "Exclude"),
     "InitialFill": ("Input", "Mean", "Noise", "Harmonic"), "Mode": ("TimeSteps", "SteadyState"),
-    "TimeIntegrator": ("FirstOrder", "SecondOrder", "Implicit"),
+    "TimeIntegrator": ("FirstOrder", "SecondOrder", "Implicit", "Exponential"),
     "Solver": ("Automatic", "Direct", "ConjugateGradient", "Multigrid"),
     "OutputPrecision": ("Single", "Double", "Input"), "EdgeFunction": EDGE_FUNCTIONS,
     "AcrossEdgeFunction": ("Same", *EDGE_FUNCTIONS), "ChannelCoupling": ("PerChannel", "Joint"),

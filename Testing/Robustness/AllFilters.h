@@ -125,6 +125,8 @@ inline std::vector<FilterKind> AllFilters()
         f->SetModeToSteadyState();
         f->SetFidelityWeight(0.1);
       }),
+    MakeKind<Heat>(
+      "HeatExponential", "fDiffused", 2, [](Heat* f) { f->SetTimeIntegratorToExponential(); }),
     MakeKind<Heat>("HeatAutomatic", "fDiffused", 3, [](Heat* f) { f->AutomaticFidelityOn(); }),
     MakeKind<Heat>("HeatDeblurred", "fDiffused", 1,
       [](Heat* f)

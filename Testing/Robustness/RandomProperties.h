@@ -181,10 +181,10 @@ List OfDiffusion()
 template <typename F>
 List OfTimeIntegrators(int timeIntegrators)
 {
-  List list{ RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 3)) };
+  List list{ RANDOM_PROPERTY(F, TimeIntegrator, Choice(dice, 4)) };
   list.back().Set = [timeIntegrators](vtkPolyDataAlgorithm* filter, Dice& dice)
   {
-    const int choice = Choice(dice, 3);
+    const int choice = Choice(dice, 4);
     const bool has = timeIntegrators >> choice & 1;
     static_cast<F*>(filter)->SetTimeIntegrator(has || dice.Flip(12) ? choice : 0);
   };
@@ -502,15 +502,15 @@ inline std::vector<FilterClass> AllFilterClasses()
   using Direction = vtkSurfaceDirectionFieldFilter;
   return {
     MakeClass<Heat>(
-      { OfSurface<Heat>(), OfDataDiffusion<Heat>(), OfTimeIntegrators<Heat>(0b011), OfHeat() }),
-    MakeClass<TV>(
-      { OfSurface<TV>(), OfDataDiffusion<TV>(), OfTimeIntegrators<TV>(0b101), OfTotalVariation() }),
+      { OfSurface<Heat>(), OfDataDiffusion<Heat>(), OfTimeIntegrators<Heat>(0b1011), OfHeat() }),
+    MakeClass<TV>({ OfSurface<TV>(), OfDataDiffusion<TV>(), OfTimeIntegrators<TV>(0b0101),
+      OfTotalVariation() }),
     MakeClass<Harmonic>({ OfSurface<Harmonic>(), OfDataDiffusion<Harmonic>(),
-      OfTimeIntegrators<Harmonic>(0b001), OfHarmonicMap() }),
+      OfTimeIntegrators<Harmonic>(0b0001), OfHarmonicMap() }),
     MakeClass<Shah>({ OfSurface<Shah>(), OfDataDiffusion<Shah>(), OfMumfordShah() }),
     MakeClass<Tensor>({ OfSurface<Tensor>(), OfDataDiffusion<Tensor>(), OfTensorDiffusion() }),
     MakeClass<Turing>({ OfSurface<Turing>(), OfDiffusion<Turing>(),
-      OfTimeIntegrators<Turing>(0b011), OfTexture() }),
+      OfTimeIntegrators<Turing>(0b0011), OfTexture() }),
     MakeClass<vtkSurfaceDenoisingFilter>({ OfSurface<vtkSurfaceDenoisingFilter>(), OfDenoising() }),
     MakeClass<vtkSurfaceCurvatureFilter>({ OfSurface<vtkSurfaceCurvatureFilter>(), OfCurvature() }),
     MakeClass<vtkSurfaceRandomFieldFilter>(

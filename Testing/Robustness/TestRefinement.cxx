@@ -3,9 +3,13 @@
 //
 // RefineTo of every kind of run, its limit, and the surfaces in pieces that it keeps together.
 
+#include "Core/Foundation/Random.h"
 #include "Twins.h"
 
 #include "vtkPartitionedDataSet.h"
+
+#include <algorithm>
+#include <cmath>
 
 using namespace FilterTest;
 
@@ -93,7 +97,147 @@ TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
   EXPECT_EQ(Difference(refining, given), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryKind, RefinementOf, testing::ValuesIn(AllFilters()), KindName);
+/// Those that ask for the noise of the data, or for the places of the values, take what was measured:
+/// on a surface that was given so, all values were.
+std::vector<FilterKind> FiltersThatTakeAllValues()
+{
+  std::vector<FilterKind> kinds = AllFilters();
+  const auto asks = [](const FilterKind& kind)
+  {
+    const std::string name = kind.Name;
+    return name.rfind("Interpolation", 0) == 0 || name.rfind("MumfordShah", 0) == 0 ||
+      name == "HeatAutomatic" || name == "TVAutomatic" || name == "HeatDeblurredFound" ||
+      name == "TVDeblurredFound";
+  };
+  kinds.erase(std::remove_if(kinds.begin(), kinds.end(), asks), kinds.end());
+  return kinds;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+  EveryKind, RefinementOf, testing::ValuesIn(FiltersThatTakeAllValues()), KindName);
+
+namespace
+{
+
+/// Gaussian white noise of the deviation 0.2 on a wave, at the points and cells of a sphere.
+vtkSmartPointer<vtkPolyData> NoisySphere(int levels)
+{
+  const auto sphere = Sphere(levels);
+  const auto noise = [](vtkIdType i, int stream)
+  {
+    const double radius = std::sqrt(-2.0 * std::log(SurfaceDiffusion::UniformRandom(7, stream, i)));
+    const double turn = SurfaceDiffusion::UniformRandom(7, stream + 2, i);
+    return 0.2 * radius * std::cos(2.0 * std::acos(-1.0) * turn);
+  };
+  AddPointArray(
+    sphere, "f", 1, [&](vtkIdType i, int) { return 2.0 * sphere->GetPoint(i)[2] + noise(i, 0); });
+  sphere->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", sphere->GetNumberOfCells(), 1,
+    [&](vtkIdType i, int)
+    {
+      double p[3];
+      sphere->GetPoint(sphere->GetCell(i)->GetPointId(0), p);
+      return 2.0 * p[2] + noise(i, 1);
+    }));
+  return sphere;
+}
+
+/// A filter on the sphere as it is, and with edges of a third.
+template <typename Filter, typename Set>
+std::vector<vtkSmartPointer<Filter>> RunOnBoth(int levels, const Set& set)
+{
+  std::vector<vtkSmartPointer<Filter>> filters;
+  for (const double length : { 0.0, 0.64 / (1 << levels) })
+  {
+    auto filter = vtkSmartPointer<Filter>::New();
+    filter->SetInputData(NoisySphere(levels));
+    filter->SetRefineTo(length);
+    filter->SetUnitsToAbsolute();
+    set(filter);
+    filter->Update();
+    filters.push_back(filter);
+  }
+  EXPECT_GT(
+    filters[1]->GetOutput()->GetNumberOfPoints(), 6 * filters[0]->GetOutput()->GetNumberOfPoints());
+  for (vtkFieldData* const data :
+    { static_cast<vtkFieldData*>(filters[1]->GetOutput()->GetPointData()),
+      static_cast<vtkFieldData*>(filters[1]->GetOutput()->GetCellData()) })
+  {
+    for (int a = 0; a < data->GetNumberOfArrays(); ++a)
+    {
+      EXPECT_EQ(std::string(data->GetArrayName(a)).find("surface diffusion"), std::string::npos);
+    }
+  }
+  return filters;
+}
+
+} // namespace
+
+TEST(Refinement, ValuesBetweenMeasuredOnesAreNoMeasurementsForInterpolation)
+{
+  for (const bool onCells : { false, true })
+  {
+    const auto filters = RunOnBoth<vtkSurfaceInterpolationFilter>(4,
+      [&](vtkSurfaceInterpolationFilter* filter)
+      {
+        SetInputArray(filter, 0, onCells ? "c" : "f", onCells);
+        filter->ResultOnCellsOff();
+        filter->ComputeErrorOn();
+      });
+    EXPECT_EQ(filters[1]->GetNumberOfValues(), filters[0]->GetNumberOfValues());
+    EXPECT_NEAR(filters[1]->GetEffectiveSmoothing(), filters[0]->GetEffectiveSmoothing(),
+      0.2 * filters[0]->GetEffectiveSmoothing());
+    const char* const error = onCells ? "cError" : "fError";
+    vtkDataArray* const given = filters[0]->GetOutput()->GetPointData()->GetArray(error);
+    vtkDataArray* const refined = filters[1]->GetOutput()->GetPointData()->GetArray(error);
+    ASSERT_TRUE(given && refined);
+    for (vtkIdType i = 0; i < given->GetNumberOfTuples(); i += 100)
+    {
+      EXPECT_NEAR(
+        refined->GetComponent(i, 0), given->GetComponent(i, 0), 0.25 * given->GetComponent(i, 0));
+    }
+  }
+}
+
+TEST(Refinement, NoiseIsThatOfTheMeasuredValues)
+{
+  for (const bool onCells : { false, true })
+  {
+    const auto edges = RunOnBoth<vtkMumfordShahFilter>(5,
+      [&](vtkMumfordShahFilter* filter)
+      {
+        SetInputArray(filter, 0, onCells ? "c" : "f", onCells);
+        filter->SetEdgeWidth(0.05);
+      });
+    for (const auto& filter : edges)
+    {
+      EXPECT_NEAR(filter->GetEstimatedNoiseLevel(), 0.2, onCells ? 0.03 : 0.02);
+    }
+    EXPECT_NEAR(edges[1]->GetEffectiveSmoothingLength(), edges[0]->GetEffectiveSmoothingLength(),
+      (onCells ? 0.5 : 0.3) * edges[0]->GetEffectiveSmoothingLength());
+    const auto heat = RunOnBoth<vtkFVMHeatFilter>(5,
+      [&](vtkFVMHeatFilter* filter)
+      {
+        SetInputArray(filter, 0, onCells ? "c" : "f", onCells);
+        filter->ResultOnCellsOff();
+        filter->AutomaticFidelityOn();
+        filter->SetModeToSteadyState();
+      });
+    double errors[2] = { 0.0, 0.0 };
+    for (int k = 0; k < 2; ++k)
+    {
+      vtkPolyData* const output = heat[k]->GetOutput();
+      vtkDataArray* const u = output->GetPointData()->GetArray(onCells ? "cDiffused" : "fDiffused");
+      ASSERT_NE(u, nullptr);
+      const auto count = static_cast<double>(heat[0]->GetOutput()->GetNumberOfPoints());
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        errors[k] += std::pow(u->GetComponent(i, 0) - 2.0 * output->GetPoint(i)[2], 2) / count;
+      }
+    }
+    EXPECT_LT(errors[1], std::pow(onCells ? 0.1 : 0.11, 2)); // of 0.2
+    EXPECT_LT(errors[1], (onCells ? 2.0 : 1.1) * errors[0]);
+  }
+}
 
 TEST(Refinement, StopsAtTheLimitWithOneWarning)
 {

@@ -32,6 +32,27 @@ void DiffusionPanel::StartSecondStage(const Values& u, double ratio, double dt)
     [&](auto number) { this->FillSecond<decltype(number)::value>(u, ratio, dt); });
 }
 
+void DiffusionPanel::StartSeries(double coefficient)
+{
+  this->Term = this->Solution;
+  this->TermBefore = this->Solution;
+  this->Sum = coefficient * this->Solution;
+  this->IsFirstTerm = true;
+}
+
+void DiffusionPanel::AddTerm(double coefficient, double dt, bool isLast)
+{
+  ForColumns(this->Solution.cols(),
+    [&](auto number) { this->FillTerm<decltype(number)::value>(coefficient, dt, isLast); });
+  this->Term.swap(this->TermBefore);
+  this->IsFirstTerm = false;
+  if (isLast)
+  {
+    this->Solution.swap(this->Sum);
+    this->Shifts.setZero();
+  }
+}
+
 void DiffusionPanel::Correct(MeanCorrection& correction)
 {
   correction.FindShifts(
@@ -118,6 +139,47 @@ void DiffusionPanel::FillSecond(const Values& u, double ratio, double dt)
       for (int k = 0; k < columns; ++k)
       {
         b[k] *= area;
+      }
+    });
+}
+
+template <int K>
+void DiffusionPanel::FillTerm(double coefficient, double dt, bool isLast)
+{
+  const ColumnCount<K> columns(this->Solution.cols());
+  const Eigen::Index first = this->FirstColumn;
+  const double* const origin = this->FirstOrigin();
+  const double factor = this->IsFirstTerm ? 2.0 : 4.0; // T_1 = 2 Y T_0 - T_0
+  this->ForEachShifted(
+    [&](Index i, const double* shifts)
+    {
+      double* const v = &this->Solution(i, 0);
+      const double* const term = &this->Term(i, 0);
+      double* const before = &this->TermBefore(i, 0);
+      double* const sum = &this->Sum(i, 0);
+      for (int k = 0; k < columns; ++k)
+      {
+        v[k] = factor * (v[k] + shifts[k]) - (factor - 2.0) * term[k] - before[k];
+        before[k] = v[k];
+        sum[k] += coefficient * v[k];
+      }
+      if (isLast)
+      {
+        return;
+      }
+      const double area = this->Mesh.ControlAreas()[i];
+      const double source = dt * this->Fit.Weight(i);
+      double* const b = &this->RightHandSide(i, 0);
+      for (int k = 0; k < columns; ++k)
+      {
+        b[k] = area * v[k];
+      }
+      if (source > 0.0)
+      {
+        for (int k = 0; k < columns; ++k)
+        {
+          b[k] += area * source * (this->Data.Given(i, first + k) - origin[k]);
+        }
       }
     });
 }

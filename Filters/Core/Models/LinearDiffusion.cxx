@@ -3,14 +3,42 @@
 #include "Core/Models/LinearDiffusion.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Models/ExponentialSeries.h"
 #include "Core/Models/InitialState.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/DirichletEnergy.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace SurfaceDiffusion
 {
+
+double LinearDiffusion::Settings::ImplicitStep() const
+{
+  switch (this->TimeScheme)
+  {
+    case Scheme::SDIRK2:
+      return Gamma * this->TimeStep;
+    case Scheme::Exponential:
+      return ExponentialSeries::Step * this->TimeStep;
+    default:
+      return this->TimeStep;
+  }
+}
+
+int LinearDiffusion::Settings::NumberOfSolves() const
+{
+  switch (this->TimeScheme)
+  {
+    case Scheme::SDIRK2:
+      return 2;
+    case Scheme::Exponential:
+      return ExponentialSeries::Degree;
+    default:
+      return 1;
+  }
+}
 
 LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   CornerWeights coefficients, PointData data, const Settings& settings,
@@ -86,6 +114,9 @@ StepReport LinearDiffusion::Advance(const ProgressMonitor& progress)
       case Scheme::SDIRK2:
         this->StepSDIRK2(first, count, report, part);
         break;
+      case Scheme::Exponential:
+        this->StepExponential(first, count, report, part);
+        break;
       case Scheme::SteadyState:
         this->StepToSteadyState(first, count, report, part);
         break;
@@ -124,6 +155,25 @@ void LinearDiffusion::StepSDIRK2(
   this->Solve(report, progress.Part(0.0, 0.5));
   this->Panel.StartSecondStage(this->U, (1.0 - Gamma) / Gamma, dt);
   this->Solve(report, progress.Part(0.5, 1.0));
+}
+
+/// The terms T_k = T_k(2 Y - 1) u of the series follow from T_0 = u, T_1 = 2 Y T_0 - T_0 and
+/// T_(k+1) = 4 Y T_k - 2 T_k - T_(k-1). The factors of each sum add up to 1, so that a step of backward
+/// Euler with a source and Dirichlet conditions can take the place of Y: exp(-dt L) is then applied to
+/// the difference from the steady state.
+void LinearDiffusion::StepExponential(
+  Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress)
+{
+  constexpr int last = ExponentialSeries::Degree;
+  const double dt = this->Options.ImplicitStep();
+  this->Panel.StartStage(this->U, first, count, 1.0, dt);
+  this->Panel.StartSeries(ExponentialSeries::Coefficients[0]);
+  for (int k = 1; k <= last; ++k)
+  {
+    this->Solve(report, progress.Part((k - 1.0) / last, static_cast<double>(k) / last));
+    this->Panel.AddTerm(
+      ExponentialSeries::Coefficients[static_cast<std::size_t>(k)], dt, k == last);
+  }
 }
 
 void LinearDiffusion::Solve(StepReport& report, const ProgressMonitor& progress)

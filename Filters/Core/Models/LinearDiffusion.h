@@ -28,6 +28,7 @@ public:
   {
     BackwardEuler, ///< (8), (14): first order, keeps bounds on Delaunay meshes
     SDIRK2, ///< second order, L-stable, two solves with one matrix; does not keep bounds
+    Exponential, ///< see ExponentialSeries: six solves with one matrix for a step of any length
     SteadyState ///< the limit t -> infinity in one step
   };
 
@@ -39,10 +40,9 @@ public:
 
     /// The factor of K in the matrix: both stages of SDIRK2 share M + gamma dt K with
     /// gamma = 1 - 1/sqrt(2) (R. Alexander, SIAM J. Numer. Anal. 14, 1977).
-    double ImplicitStep() const
-    {
-      return this->TimeScheme == Scheme::SDIRK2 ? Gamma * this->TimeStep : this->TimeStep;
-    }
+    double ImplicitStep() const;
+    /// The solves of a step.
+    int NumberOfSolves() const;
   };
   static constexpr double Gamma = 0.2928932188134524;
 
@@ -69,6 +69,8 @@ private:
   void StepBackwardEuler(
     Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress);
   void StepSDIRK2(
+    Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress);
+  void StepExponential(
     Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress);
   void StepToSteadyState(
     Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress);

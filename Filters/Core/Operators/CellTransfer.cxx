@@ -183,16 +183,30 @@ Values CellTransfer::ToCells(const Values& ofVertices) const
   return values;
 }
 
-double CellTransfer::NoiseGain() const
+double CellTransfer::NoiseGain(const std::vector<Index>& measuredAs) const
 {
   const Index n = this->Mesh.NumberOfVertices();
-  Values sums = Values::Zero(n, 3); // A_i, the sum of the shares and that of their squares
+  Values sums =
+    Values::Zero(n, 3); // A_i, the sum of the shares, and of the squares of values' shares
   ForEach(this->Parallel, n,
     [&](Index i)
     {
       this->ForEachCornerAround(i,
-        [&](const Corner& corner) {
-          sums.row(i) += Eigen::RowVector3d(corner.Area, corner.Share, corner.Share * corner.Share);
+        [&](const Corner& corner)
+        {
+          double ofValue = corner.Share;
+          if (!measuredAs.empty())
+          {
+            ofValue = 0.0;
+            this->ForEachCornerAround(i,
+              [&](const Corner& other)
+              {
+                const bool isSame = measuredAs[static_cast<std::size_t>(other.Cell)] ==
+                  measuredAs[static_cast<std::size_t>(corner.Cell)];
+                ofValue += isSame ? other.Share : 0.0;
+              });
+          }
+          sums.row(i) += Eigen::RowVector3d(corner.Area, corner.Share, corner.Share * ofValue);
         });
     });
   const Reduction& reduction = this->Mesh.GetReduction();

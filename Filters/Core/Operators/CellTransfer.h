@@ -79,8 +79,9 @@ public:
   }
 
   /// The standard deviation of P f over that of f for white noise f, as root mean square over the
-  /// surface. Collective.
-  double NoiseGain() const;
+  /// surface. measuredAs: per cell, a number that cells with the same value share, as those do that
+  /// were one when it was measured; empty if there are none. Collective.
+  double NoiseGain(const std::vector<Index>& measuredAs = {}) const;
 
 private:
   /// A corner of a cell.

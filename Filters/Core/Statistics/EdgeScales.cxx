@@ -4,7 +4,7 @@
 
 #include "Core/Foundation/Resize.h"
 #include "Core/Foundation/RobustRange.h"
-#include "Core/Operators/Rings.h"
+#include "Core/Statistics/LinearFit.h"
 #include "Core/Statistics/NoiseLevel.h"
 
 #include <Eigen/Eigenvalues>
@@ -82,18 +82,15 @@ class Component
 public:
   Component(const Assembler& assembler, const Eigen::Ref<const Points>& points,
     const PointData& data, VertexRange range)
-    : Operators(assembler)
-    , Coordinates(points)
-    , Data(data)
-    , Range(range)
+    : Data(assembler, points, data, range)
   {
   }
 
   double MeanEdgeLength() const
   {
-    const SparsePattern& pattern = this->Operators.Pattern();
+    const SparsePattern& pattern = this->Data.Neighbours;
     double sum = 0.0, count = 0.0;
-    for (Index i = this->Range.Begin; i < this->Range.End; ++i)
+    for (Index i = this->Data.Range.Begin; i < this->Data.Range.End; ++i)
     {
       for (Index slot = pattern.Outer[i]; slot < pattern.Outer[i + 1]; ++slot)
       {
@@ -118,9 +115,9 @@ public:
     {
       known.clear();
       ValueBounds all;
-      for (Index i = this->Range.Begin; i < this->Range.End; ++i)
+      for (Index i = this->Data.Range.Begin; i < this->Data.Range.End; ++i)
       {
-        if (!this->Data.Missing[i])
+        if (!this->Data.IsMissing(i))
         {
           known.push_back(this->Data.Given(i, k));
           all.Widen({ known.back(), known.back() });
@@ -139,19 +136,18 @@ public:
   /// The slope between the jumps of the data. noise: of a channel.
   double Slope(double noise) const
   {
-    Rings rings(this->Operators.Pattern(), this->Range);
+    Rings rings = this->Data.MakeRings();
     std::vector<Fit> fits;
     double area = 0.0, withoutJump = 0.0;
     Points offsets;
     Values deviations;
-    const Index stride = 1 + this->Range.Size() / LargestSample;
-    for (Index i = this->Range.Begin; i < this->Range.End; i += stride)
+    for (const Index i : this->Data.SampleVertices(LargestSample))
     {
       this->ReadDisk(rings.FindDisk(i, DiskRadius), offsets, deviations);
       if (offsets.rows() >= SmallestDisk)
       {
         Fit fit = FitDisk(offsets, deviations, noise * noise);
-        fit.Area = this->Operators.Mesh().ControlAreas()[i];
+        fit.Area = this->Data.Operators.Mesh().ControlAreas()[i];
         area += fit.Area;
         if (!fit.HasJump)
         {
@@ -186,9 +182,9 @@ private:
   /// In the length unit of the mesh, so that products of lengths are within the range of numbers.
   Eigen::RowVector3d Point(Index i) const
   {
-    const std::vector<Index>& row = this->Operators.Mesh().InputVertex();
-    return this->Coordinates.row(row[static_cast<std::size_t>(i)]) /
-      this->Operators.Mesh().LengthUnit();
+    const TriangleMesh& mesh = this->Data.Operators.Mesh();
+    return this->Data.InputPoints.row(mesh.InputVertex()[static_cast<std::size_t>(i)]) /
+      mesh.LengthUnit();
   }
 
   void ReadDisk(const std::vector<Index>& disk, Points& offsets, Values& deviations) const
@@ -198,7 +194,7 @@ private:
     Eigen::Index known = 0;
     for (const Index i : disk)
     {
-      if (!this->Data.Missing[i])
+      if (!this->Data.IsMissing(i))
       {
         offsets.row(known) = this->Point(i);
         deviations.row(known++) = this->Data.Given.row(i);
@@ -213,10 +209,7 @@ private:
     }
   }
 
-  const Assembler& Operators;
-  Eigen::Ref<const Points> Coordinates;
-  const PointData& Data;
-  VertexRange Range;
+  const FitData Data;
 };
 
 /// The J that a slope needs.

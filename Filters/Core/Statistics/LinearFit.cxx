@@ -122,6 +122,28 @@ double RobustDeviation(std::vector<double>& deviations)
 
 } // namespace
 
+std::vector<Index> FitData::SampleVertices(Index largest) const
+{
+  const auto mayCount = [this](Index i) { return !this->IsBetween || !(*this->IsBetween)[i]; };
+  Index count = this->Range.Size();
+  if (this->IsBetween)
+  {
+    count -=
+      static_cast<Index>(this->IsBetween->segment(this->Range.Begin, this->Range.Size()).count());
+  }
+  const Index stride = 1 + count / largest;
+  std::vector<Index> sample;
+  Index number = 0;
+  for (Index i = this->Range.Begin; i < this->Range.End; ++i)
+  {
+    if (mayCount(i) && number++ % stride == 0)
+    {
+      sample.push_back(i);
+    }
+  }
+  return sample;
+}
+
 Eigen::RowVectorXd RoundOffOf(const FitData& data)
 {
   Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(data.Given.cols());

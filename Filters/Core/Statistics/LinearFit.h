@@ -5,6 +5,8 @@
 #include "Core/Foundation/Types.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/Rings.h"
+#include "Core/Statistics/MeasuredVertices.h"
+#include "Core/Surface/PointData.h"
 
 #include <vector>
 
@@ -15,14 +17,37 @@ namespace SurfaceDiffusion
 /// TriangleMesh::InputVertex.
 struct FitData
 {
+  /// Values between those that were measured are missing.
+  FitData(const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data,
+    VertexRange range)
+    : Operators(assembler)
+    , InputPoints(points)
+    , Given(data.Given)
+    , Range(range)
+    , Neighbours(data.Measured ? data.Measured->Neighbours : assembler.Pattern())
+    , Missing(data.Missing.segment(range.Begin, range.Size()))
+  {
+    if (data.Measured)
+    {
+      this->IsBetween = &data.Measured->IsBetween;
+      this->Missing = this->Missing || this->IsBetween->segment(range.Begin, range.Size());
+    }
+  }
+
   const Assembler& Operators;
   const Eigen::Ref<const Points>& InputPoints;
   const Values& Given;
-  VertexRange Range;
+  const VertexRange Range;
+  const SparsePattern& Neighbours; ///< of the vertices with measured values
   Flags Missing; ///< per vertex of the range
 
   bool IsMissing(Index vertex) const { return this->Missing[vertex - this->Range.Begin] != 0; }
-  Rings MakeRings() const { return Rings(this->Operators.Pattern(), this->Range); }
+  Rings MakeRings() const { return Rings(this->Neighbours, this->Range); }
+  /// At most about so many of the vertices with measured or missing values, evenly by number.
+  std::vector<Index> SampleVertices(Index largest) const;
+
+private:
+  const Flags* IsBetween = nullptr; ///< null: no vertex
 };
 
 /// The difference up to which the values of each column are equal: means of equal numbers, such as

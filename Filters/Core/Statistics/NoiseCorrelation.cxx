@@ -115,8 +115,7 @@ void MeasureResiduals(const FitData& data, NeighbourVariation& variation)
   RobustDeviations single(columns);
   RobustDeviations sums(columns);
   RobustDeviations differences(columns);
-  const Index stride = 1 + data.Range.Size() / LargestSample;
-  for (Index i = data.Range.Begin; i < data.Range.End; i += stride)
+  for (const Index i : data.SampleVertices(LargestSample))
   {
     const Index j = used[i] ? -1 : NearestNeighbour(i, rings, data);
     if (j < 0 || used[j])
@@ -222,8 +221,8 @@ NeighbourVariation MeasureVariation(const Assembler& assembler,
 {
   NeighbourVariation variation;
   variation.OfLinearFits = ofLinearFits;
-  const FitData data{ assembler, points, given.Given, { 0, assembler.Mesh().NumberOfVertices() },
-    !FindVaryingVertices(assembler, given) };
+  FitData data(assembler, points, given, { 0, assembler.Mesh().NumberOfVertices() });
+  data.Missing = !FindVaryingVertices(assembler, given);
   if (data.Given.rows() > 0)
   {
     MeasureResiduals(data, variation);

@@ -25,12 +25,11 @@ constexpr double SettledGrowth = 1.3; ///< at the farthest ring
 double EstimateAt(int edges, const FitData& data)
 {
   const Eigen::Index columns = data.Given.cols();
-  const Index stride = 1 + data.Range.Size() / LargestSample;
   Rings rings = data.MakeRings();
   const Eigen::RowVectorXd roundOff = RoundOffOf(data);
   RobustDeviations deviations(columns);
   double count = 0.0;
-  for (Index i = data.Range.Begin; i < data.Range.End; i += stride)
+  for (const Index i : data.SampleVertices(LargestSample))
   {
     if (data.IsMissing(i))
     {
@@ -62,7 +61,7 @@ double EstimateAt(int edges, const FitData& data)
 /// See FindVaryingVertices(). Per vertex of the range.
 Flags FindVarying(const FitData& data)
 {
-  const SparsePattern& pattern = data.Operators.Pattern();
+  const SparsePattern& pattern = data.Neighbours;
   const Index first = data.Range.Begin;
   const Index n = data.Range.Size();
   const Eigen::RowVectorXd roundOff = RoundOffOf(data);
@@ -106,7 +105,7 @@ VertexRange AllVertices(const Assembler& assembler)
 Flags FindVaryingVertices(const Assembler& assembler, const PointData& data)
 {
   const Points none;
-  return FindVarying({ assembler, none, data.Given, AllVertices(assembler), data.Missing });
+  return FindVarying({ assembler, none, data, AllVertices(assembler) });
 }
 
 NoiseEstimate EstimateNoise(
@@ -118,8 +117,7 @@ NoiseEstimate EstimateNoise(
 NoiseEstimate EstimateNoise(const Assembler& assembler, const Eigen::Ref<const Points>& points,
   const PointData& given, VertexRange range)
 {
-  FitData data{ assembler, points, given.Given, range,
-    given.Missing.segment(range.Begin, range.Size()) };
+  FitData data(assembler, points, given, range);
   data.Missing = !FindVarying(data);
   NoiseEstimate estimate;
   estimate.BetweenNeighbours = EstimateAt(1, data);

@@ -4,10 +4,13 @@
 
 #include "Core/Foundation/Types.h"
 
+#include <memory>
 #include <utility>
 
 namespace SurfaceDiffusion
 {
+
+struct MeasuredVertices;
 
 /// The data of a model on the vertices of a surface, all finite: values, initial state and
 /// Dirichlet conditions. Missing values have been filled in Start; Given is not read at those
@@ -19,6 +22,7 @@ struct PointData
   Flags Missing; ///< the hole of the data, where chi = 0: no fidelity term
   Flags Fixed; ///< Dirichlet condition: u keeps its Start
   Vector FidelityFactors; ///< w >= 0, by which lambda is multiplied; empty: 1 everywhere
+  std::shared_ptr<const MeasuredVertices> Measured; ///< null: the data of all vertices were
 
   /// w chi at vertex i.
   double FidelityFactor(Index i) const

@@ -124,6 +124,7 @@ def _surface_place(entry, part, surface, areas, width, arguments):
         excluded[entry.vertices[inside]] = False
         mask = excluded if excluded.any() else None
         return heat(solver, full, mask=mask, mask_mode="Exclude", fwhm=width,
+                    time_integrator="Exponential",
                     number_of_time_steps=arguments.steps)[entry.vertices]
 
     def measure(inside):

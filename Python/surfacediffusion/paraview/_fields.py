@@ -14,6 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellTypes, vtkDataObject, vtkDataSe
 
 from .. import _core
 from .._surface import data_components
+from ._refinement import BETWEEN, GIVEN_CELL
 from ._surfaces import Block, SurfaceError, to_numpy
 
 POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
@@ -210,6 +211,10 @@ def make_core(fields: Fields, block: Block) -> None:
         fields.core.set_speeds(speeds, fields.speeds.on_cells)
     if times is not None:
         fields.core.set_start_times(times)
+    between = block.input.GetPointData().GetArray(BETWEEN)
+    if between is not None:
+        given = block.input.GetCellData().GetArray(GIVEN_CELL)
+        fields.core.set_measured(to_numpy(between), to_numpy(given).astype(np.int64))
     if fields.global_ids is not None:
         ids, count = fields.global_ids, block.input.GetNumberOfPoints()
         if ids.GetNumberOfTuples() != count:

@@ -20,6 +20,7 @@ from vtkmodules.vtkCommonDataModel import vtkBoundingBox, vtkCellArray, vtkDataS
 
 from .. import _core
 from ._normals import drop_normals
+from ._refinement import BETWEEN, GIVEN_CELL
 from ._results import copy_component_names, make_array
 from ._surfaces import ABSENT, Block, cell_flags, polygons_of, to_numpy
 
@@ -332,7 +333,8 @@ def _find_read(
     for a in range(arrays.GetNumberOfArrays()):
         array = arrays.GetAbstractArray(a)
         name = array.GetName() or ""
-        if (name in names or any(array is each for each in active)) and name != _GHOSTS and (
+        is_read = name in names or name in (BETWEEN, GIVEN_CELL) or any(array is each for each in active)
+        if is_read and name != _GHOSTS and (
                 array.GetNumberOfTuples() >= first + count):
             seen[name] = seen.get(name, -1) + 1
             yield (name, seen[name]), array

@@ -34,6 +34,11 @@ def mean_edge_length(blocks: list[Block], shapes: Shapes) -> float:
     return sum(lengths) / sum(counts) if sum(counts) else 0.0
 
 
+#: Arrays of the inputs during an update, not of their outputs: per point, 1 in the middle of an edge that was
+#: bisected; per cell, the cell of the input that it was cut from, by a number of its own among all blocks.
+BETWEEN, GIVEN_CELL = "surface diffusion between", "surface diffusion given cell"
+
+
 class Refinement:
     """The refined surfaces of an update, which replace its blocks."""
 
@@ -52,14 +57,25 @@ class Refinement:
                            default=0.0)
         if self.longest > 0.0 and len(blocks) > 1:
             found = self._bisect_all(blocks, self.longest, limit, progress)  # alike in every block
+        cells = 0
         for block, refined in zip(blocks, found):
+            before = block.input
             if len(refined["parents"]):
-                surface = _make_surface(block.input, refined)
-                self._before.append((block, block.input))
+                block.input = _make_surface(before, refined)
                 self.triangles += len(refined["triangles"])
-                block.output.ShallowCopy(surface)
-                block.input, block.shape = surface, None
+                block.output.ShallowCopy(block.input)
+                given = to_numpy(block.input.GetCellData().GetArray("vtkOriginalCellIds"))
+                block.shape = None
                 self._shapes.find(block)
+            else:
+                block.input = vtkPolyData()
+                block.input.ShallowCopy(before)
+                given = np.arange(before.GetNumberOfCells())
+            self._before.append((block, before))
+            between = np.arange(block.input.GetNumberOfPoints()) >= before.GetNumberOfPoints()
+            block.input.GetPointData().AddArray(make_array(BETWEEN, between.astype(np.uint8)))
+            block.input.GetCellData().AddArray(make_array(GIVEN_CELL, (cells + given).astype(np.int64)))
+            cells += before.GetNumberOfCells()
 
     def _bisect_all(
         self, blocks: list[Block], length: float, limit: int, progress: Callable[[float], Any]

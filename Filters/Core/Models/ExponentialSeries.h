@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+namespace SurfaceDiffusion
+{
+
+/// An approximation of exp(-dt L), for an operator L of eigenvalues 0 or above, by a polynomial in
+/// its resolvent, which is a step of backward Euler of the length s dt:
+///
+///     exp(-dt L) ~ p(Y),  Y = (1 + s dt L)^-1,  p(y) = sum over k of c_k T_k(2 y - 1)
+///
+/// with the Chebyshev polynomials T_k (one pole: S. Norsett, SIAM J. Numer. Anal. 15, 1978). With
+/// z = dt lambda and y = 1/(1 + s z), the coefficients minimise
+///
+///     int from z = 0 to infinity of (p(y) - exp(-z))^2 dz
+///
+/// under the conditions p = 1 and dp/dz = -1 at z = 0, and p = 0 at z = infinity. The eigenvalues of
+/// a surface have a constant density (Weyl's law), so that the integral is the square of the error
+/// for white noise: 0.46 % of the exact result, however long the step is and however small the
+/// triangles are. The conditions keep constants and make the variance of the kernel, 2 dt in each
+/// direction, exact. The error for any eigenfunction is at most 0.0014.
+struct ExponentialSeries
+{
+  static constexpr double Step = 0.2; ///< s
+  static constexpr int Degree = 6;
+  static constexpr std::array<double, Degree + 1> Coefficients = { // c_k, of the sum 1
+    0.23219251097366198, 0.3995095044281711, 0.2492498506907564, 0.1037724077702688,
+    0.02082438761217644, -0.003281912198437957, -0.002266749276596778 };
+};
+
+} // namespace SurfaceDiffusion
