@@ -8,6 +8,9 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
@@ -57,6 +60,39 @@ TEST(Eigenmodes, OfTheSphereHaveOrderTwoAndTheirMultiplicities)
     EXPECT_LT(DefectOfOrthonormality(s, found), 1e-12);
   }
   EXPECT_GT(ObservedOrder(errors[0], errors[1]), 1.9);
+}
+
+/// A block of Lanczos' method finds an eigenvalue as often as it has columns.
+TEST(Eigenmodes, OfTheSameEigenvalueAreAllFound)
+{
+  const Surface s = Icosphere(4);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  CornerWeights coefficients = CotanWeights(mesh);
+  std::vector<char> diffuses(static_cast<std::size_t>(mesh.NumberOfVertices()), 0);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    double height = 0.0;
+    for (const Index i : mesh.TriangleVertices().row(t))
+    {
+      height += s.Vertices(mesh.InputVertex()[static_cast<std::size_t>(i)], 2) / 3.0;
+    }
+    if (height > 0.8)
+    {
+      coefficients.row(t).setZero();
+      continue;
+    }
+    for (const Index i : mesh.TriangleVertices().row(t))
+    {
+      diffuses[static_cast<std::size_t>(i)] = 1;
+    }
+  }
+  const auto zeros = static_cast<Index>(std::count(diffuses.begin(), diffuses.end(), 0)) + 1;
+  ASSERT_GT(zeros, 150); // one for each vertex without diffusion
+  const Eigenmodes found = FindEigenmodes(*assembler, coefficients, zeros + 5);
+  EXPECT_LT(found.Eigenvalues[zeros - 1], 1e-9);
+  EXPECT_GT(found.Eigenvalues[zeros], 1e-3);
+  EXPECT_LT(DefectOfOrthonormality(s, found), 1e-11);
 }
 
 TEST(Eigenmodes, AreThoseOfTheDenseProblem)

@@ -28,6 +28,10 @@ constexpr Index Block = KrylovBasis::BlockColumns;
 constexpr int Power = 4;
 /// Of a pair of A^Power, relative to its eigenvalue. The error of lambda is of second order in it.
 constexpr double Tolerance = 1e-8;
+/// Eigenvalues that agree so far may be one.
+constexpr double Agreement = 1e-6;
+/// The steps after which a new random block shows what the iteration has missed.
+constexpr Index StepsOfSearch = 6;
 /// With fewer rows the dense problem takes less time.
 constexpr Index FewRows = 400;
 
@@ -97,6 +101,7 @@ private:
     const Index most = (this->Size() - 1) / Block * Block;
     // Mostly enough for the last eigenvalue that is wanted
     Index enough = std::min(most, wanted + 3 * (wanted / 4) + 3 * Block);
+    Vector before; // the eigenvalues at the last convergence
     while (true)
     {
       this->Basis.Append(w);
@@ -115,8 +120,24 @@ private:
       const Vector errors = (coupling * vectors.bottomRows(Block)).colwise().norm().transpose();
       if ((errors.array() <= Tolerance * values.array()).all())
       {
-        modes.rightCols(wanted) = this->Basis.Combine(vectors);
-        return modes;
+        const bool isConfirmed = before.size() > 0 &&
+          ((values - before).array().abs() <= Agreement * values.array()).all();
+        if (isConfirmed || !MayHaveMissed(values) || columns + StepsOfSearch * Block > most)
+        {
+          modes.rightCols(wanted) = this->Basis.Combine(vectors);
+          return modes;
+        }
+        before = values;
+        for (Index k = 0; k < Block; ++k)
+        {
+          this->FillRandomly(w, k);
+        }
+        this->Basis.Project(w);
+        this->Basis.Project(w);
+        this->RemoveConstant(w);
+        this->Orthonormalize(w);
+        enough = columns + StepsOfSearch * Block;
+        continue;
       }
       if (columns + Block > most)
       {
@@ -124,6 +145,18 @@ private:
       }
       enough = std::min(most, enough + std::max(2 * Block, wanted / 8));
     }
+  }
+
+  /// A block of Lanczos' method finds an eigenvalue as often as it has columns, and more often by
+  /// round-off only.
+  static bool MayHaveMissed(const Vector& descending)
+  {
+    Index same = 1;
+    for (Eigen::Index k = 1; k < descending.size() && same < Block; ++k)
+    {
+      same = descending[k] > (1.0 - Agreement) * descending[k - 1] ? same + 1 : 1;
+    }
+    return same >= Block;
   }
 
   void Factorize(Index wanted, const ProgressMonitor& progress)
