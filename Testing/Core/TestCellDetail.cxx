@@ -149,7 +149,8 @@ TEST(CellFluxes, MakeAnMMatrixOnAnySurface)
 
 TEST(CellDetail, ImpulsesSpreadAsWidelyAsOnPoints)
 {
-  for (const auto integrator : { TimeIntegrator::FirstOrder, TimeIntegrator::SecondOrder })
+  for (const auto integrator :
+    { TimeIntegrator::FirstOrder, TimeIntegrator::SecondOrder, TimeIntegrator::Exponential })
   {
     for (const bool quads : { false, true })
     {
@@ -189,6 +190,21 @@ TEST(CellDetail, WhiteNoiseLeavesAtTheDefaultsOfHeat)
     const Values result = CellResultOf(run, input, HeatSettings());
     const Vector& areas = run.GetBlock(0).Cells->Transfer.CellAreas();
     EXPECT_LT(Deviation(areas, result), 0.12 * Deviation(areas, input.Data.Data.Values));
+  }
+}
+
+TEST(CellDetail, OneExponentialStepIsThatOfManySteps)
+{
+  CellInput input(Icosphere(4));
+  input.Data.Data.Values = WhiteNoise(input.Data.NumberOfCells, 2);
+  for (const double time : { 0.3, 2.0, 8.0, 30.0 }) // widths of 2, 5, 9 and 18 edges
+  {
+    SurfaceDiffusion::Run run(SerialFor());
+    const Values exact =
+      CellResultOf(run, input, Heat(time / 3000, 3000, TimeIntegrator::SecondOrder));
+    const Vector areas = run.GetBlock(0).Cells->Transfer.CellAreas();
+    const Values one = CellResultOf(run, input, Heat(time, 1, TimeIntegrator::Exponential));
+    EXPECT_LT(Deviation(areas, one - exact), 0.01 * Deviation(areas, exact)) << time;
   }
 }
 

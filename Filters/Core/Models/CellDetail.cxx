@@ -3,10 +3,12 @@
 #include "Core/Models/CellDetail.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Models/ExponentialSeries.h"
 #include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -60,6 +62,23 @@ void CellDetail::Advance(Model& model, StepReport& report, const ProgressMonitor
   {
     return;
   }
+  if (step.IsExponential)
+  {
+    this->StepExponential(model, step, report, progress);
+  }
+  else
+  {
+    this->StepBackwardEuler(model, step, report, progress);
+  }
+  if (this->Given.HasRange)
+  {
+    this->Range.Keep(model.State(), this->Given.Held, this->Components, this->Detail);
+  }
+}
+
+void CellDetail::StepBackwardEuler(
+  Model& model, const DiffusionStep& step, StepReport& report, const ProgressMonitor& progress)
+{
   const Eigen::Index columns = this->Detail.cols();
   const Eigen::Index together = step.SharesTensor ? columns : 1;
   for (Eigen::Index first = 0; first < columns; first += together)
@@ -69,10 +88,36 @@ void CellDetail::Advance(Model& model, StepReport& report, const ProgressMonitor
     this->AdvanceColumns(first, first + together, model, step, report,
       progress.Part(share(first), share(first + together)));
   }
-  if (this->Given.HasRange)
+}
+
+/// As LinearDiffusion::StepExponential().
+void CellDetail::StepExponential(
+  Model& model, DiffusionStep step, StepReport& report, const ProgressMonitor& progress)
+{
+  constexpr int last = ExponentialSeries::Degree;
+  step.TimeStep *= ExponentialSeries::Step;
+  Values before = this->Detail;
+  Values term = this->Detail;
+  Values sum = ExponentialSeries::Coefficients[0] * this->Detail;
+  for (int k = 1; k <= last; ++k)
   {
-    this->Range.Keep(model.State(), this->Given.Held, this->Components, this->Detail);
+    this->StepBackwardEuler(
+      model, step, report, progress.Part((k - 1.0) / last, static_cast<double>(k) / last));
+    const double factor = k == 1 ? 2.0 : 4.0;
+    this->Detail = factor * this->Detail - (factor - 2.0) * term - before;
+    before.swap(term);
+    term = this->Detail;
+    sum += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * term;
   }
+  for (Index c = 0; c < this->Cells.NumberOfCells(); ++c)
+  {
+    if (this->Fixed[static_cast<std::size_t>(c)] == 0) // others keep their bits
+    {
+      this->Detail.row(c) = sum.row(c);
+    }
+  }
+  this->Detail.bottomRows(this->Detail.rows() - this->Cells.NumberOfCells()) =
+    sum.bottomRows(sum.rows() - this->Cells.NumberOfCells());
 }
 
 void CellDetail::AdvanceColumns(Eigen::Index first, Eigen::Index last, Model& model,

@@ -22,7 +22,8 @@ namespace SurfaceDiffusion
 ///     (A + dt L + dt lambda w chi A) d_new = A (d_old + dt lambda w chi d_0),
 ///
 /// with the areas A of the cells, the fluxes L of CellFluxes for the diffusion tensor D of the
-/// model's step, and the model's lambda, factors w and indicator chi of the known cells. The steady
+/// model's step, and the model's lambda, factors w and indicator chi of the known cells. If the
+/// model's step is an ExponentialSeries, so is that of d, of such steps. The steady
 /// state is the limit of infinite dt; of a connected component without fidelity it is the mean.
 /// With an L1 norm, lambda is divided by the distance of the result to f at the old d. Per
 /// connected component without held cells, the sum of A d is that of the equation, to round-off.
@@ -69,7 +70,12 @@ public:
   void Restore(const double* checkpoint);
 
 private:
-  /// A step of columns that share D.
+  /// A step of all columns by backward Euler.
+  void StepBackwardEuler(
+    Model& model, const DiffusionStep& step, StepReport& report, const ProgressMonitor& progress);
+  void StepExponential(
+    Model& model, DiffusionStep step, StepReport& report, const ProgressMonitor& progress);
+  /// The same of columns that share D.
   void AdvanceColumns(Eigen::Index first, Eigen::Index last, Model& model,
     const DiffusionStep& step, StepReport& report, const ProgressMonitor& progress);
   void TakeDiffusion(Model& model, Eigen::Index column);

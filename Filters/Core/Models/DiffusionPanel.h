@@ -31,8 +31,8 @@ public:
   /// After the first stage: RightHandSide = M (u + ratio (Solution - u) + dt lambda chi f).
   void StartSecondStage(const Values& u, double ratio, double dt);
 
-  /// After StartStage(): the sum of a series of terms T_k, see LinearDiffusion::StepExponential(), of
-  /// which T_0 is Solution.
+  /// After StartStage(): the sum of a series of terms T_k, see LinearDiffusion::StepExponential(),
+  /// of which T_0 is Solution.
   void StartSeries(double coefficient);
   /// Solution is Y T_(k-1): add coefficient T_k to the sum and make T_k Solution, and
   /// RightHandSide = M (T_k + dt lambda chi f). isLast: make the sum Solution.

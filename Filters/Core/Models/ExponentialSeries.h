@@ -17,18 +17,19 @@ namespace SurfaceDiffusion
 ///
 ///     int from z = 0 to infinity of (p(y) - exp(-z))^2 dz
 ///
-/// under the conditions p = 1 and dp/dz = -1 at z = 0, and p = 0 at z = infinity. The eigenvalues of
-/// a surface have a constant density (Weyl's law), so that the integral is the square of the error
-/// for white noise: 0.46 % of the exact result, however long the step is and however small the
-/// triangles are. The conditions keep constants and make the variance of the kernel, 2 dt in each
-/// direction, exact. The error for any eigenfunction is at most 0.0014.
+/// under the conditions p = 1 and dp/dz = -1 at z = 0, and p = 0 at z = infinity. The eigenvalues
+/// of a surface have a constant density (Weyl's law), so that the integral is the square of the
+/// error for white noise: 0.46 % of the exact result, however long the step is and however small
+/// the triangles are. The conditions keep constants and make the variance of the kernel, 2 dt in
+/// each direction, exact. The error for any eigenfunction is at most 0.0014.
 struct ExponentialSeries
 {
   static constexpr double Step = 0.2; ///< s
   static constexpr int Degree = 6;
   static constexpr std::array<double, Degree + 1> Coefficients = { // c_k, of the sum 1
     0.23219251097366198, 0.3995095044281711, 0.2492498506907564, 0.1037724077702688,
-    0.02082438761217644, -0.003281912198437957, -0.002266749276596778 };
+    0.02082438761217644, -0.003281912198437957, -0.002266749276596778
+  };
 };
 
 } // namespace SurfaceDiffusion

@@ -158,9 +158,9 @@ void LinearDiffusion::StepSDIRK2(
 }
 
 /// The terms T_k = T_k(2 Y - 1) u of the series follow from T_0 = u, T_1 = 2 Y T_0 - T_0 and
-/// T_(k+1) = 4 Y T_k - 2 T_k - T_(k-1). The factors of each sum add up to 1, so that a step of backward
-/// Euler with a source and Dirichlet conditions can take the place of Y: exp(-dt L) is then applied to
-/// the difference from the steady state.
+/// T_(k+1) = 4 Y T_k - 2 T_k - T_(k-1). The factors of each sum add up to 1, so that a step of
+/// backward Euler with a source and Dirichlet conditions can take the place of Y: exp(-dt L) is
+/// then applied to the difference from the steady state.
 void LinearDiffusion::StepExponential(
   Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress)
 {
@@ -190,6 +190,7 @@ DiffusionStep LinearDiffusion::Diffusion() const
     this->Options.TimeScheme == Scheme::SteadyState ? InfiniteTime : this->Options.TimeStep;
   step.Fidelity = this->Options.Fidelity;
   step.IsConstant = true;
+  step.IsExponential = this->Options.TimeScheme == Scheme::Exponential;
   return step;
 }
 

@@ -54,6 +54,7 @@ struct DiffusionStep
   bool IsL1 = false; ///< the fidelity is lambda w chi (f - u) / |f - u|
   bool SharesTensor = true; ///< all columns have one D
   bool IsConstant = false; ///< D is the same in all steps
+  bool IsExponential = false; ///< the step is an ExponentialSeries
 };
 
 /// The time stepper of an evolution equation on one surface: a state that moves in time step by
