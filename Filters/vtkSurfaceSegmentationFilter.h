@@ -36,12 +36,15 @@
  * difference d. A cap of the angle theta on the unit sphere is kept if lambda d^2 > cot(theta/2).
  * By default (AutomaticFidelity) lambda is found from the data,
  *
- *     lambda = 0.6/(h D),   D = the mean of r_(2) - r_(1) over the known points where they differ,
+ *     lambda = 0.6/(h D m), D = the mean of r_(2) - r_(1) over the known points where they differ,
  *
  * where r_(1) and r_(2) are the smallest two data terms of a point for the given means or, with
  * AutomaticMeans, for the clusters of the values. D is the contrast of the data, d^2 for two values
  * without noise. Noise hardly changes it, or raises it. So regions are kept from a radius of about
- * 3 h on, while noise of up to the distance of the means makes none. The mean has weights A w.
+ * 3 h on, while noise of up to the distance of the means makes none. The mean has weights A w; m is
+ * the mean of the factors w, so that these may have any unit. With AutomaticMeans, values beyond the
+ * largest and the smallest 0.1 % count as these bounds if the whole range is more than three times
+ * as wide, with a warning.
  *
  * **Units.** In natural units FidelityWeight is in 1/(h R^2), and in 1/(h R) with given data terms,
  * R their range. R includes the noise: under normal noise of half the difference of two values it

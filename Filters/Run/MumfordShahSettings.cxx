@@ -167,6 +167,7 @@ ModelTraits MumfordShahSettings::DescribeModel() const
   traits.ResultSuffix = "MumfordShah";
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FidelityWeight > 0.0;
+  traits.EstimatesNoise = true; // also for a warning
   traits.CanBeDistributed = !this->EdgeCurves && !this->AutomaticThreshold;
   DescribeData(*this, traits);
   return traits;
@@ -204,6 +205,7 @@ double MumfordShahSettings::UseFoundScales(
   {
     return this->UseGivenScales(inputs, settings, result);
   }
+  inputs.Data.FidelityFactors /= MeanFidelityFactor(mesh, inputs.Data);
   std::size_t largest = 0;
   double longest = 0.0;
   for (std::size_t c = 0; c < scales.size(); ++c)
@@ -237,8 +239,7 @@ double MumfordShahSettings::UseFoundScales(
   result.AddNumber("EffectiveSmoothingLength", length / inputs.Units.ToCore(1.0, 1.0, 0.0));
   result.AddNumber("EstimatedNoiseLevel",
     this->NoiseLevel > 0.0 ? this->NoiseLevel
-                           : inputs.Units.FromCore(reference.Noise, 0.0, 1.0) /
-        (inputs.Cells ? inputs.Cells->NoiseGain(inputs.GivenCells) : 1.0));
+                           : inputs.Units.FromCore(reference.Noise, 0.0, 1.0) / NoiseGain(inputs));
   const MumfordShahSettings defaults;
   WarnOfUnused("EdgeThreshold", this->EdgeThreshold, defaults.EdgeThreshold, result);
   WarnOfUnused("SmoothingLength", this->SmoothingLength, defaults.SmoothingLength, result);

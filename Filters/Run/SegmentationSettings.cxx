@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/SegmentationSettings.h"
 
+#include "Core/Foundation/RobustRange.h"
 #include "Core/Geometry/RegionBoundaries.h"
 #include "Core/Models/Segmentation.h"
 #include "Core/Statistics/RegionMeans.h"
+#include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -153,7 +156,41 @@ double FidelityOfContrast(const ModelInputs& inputs, const Segmentation::Input& 
 {
   const double contrast =
     MeanContrast(inputs.Surface.Mesh(), input.Data, input.Means, inputs.Parallel);
-  return contrast > 0.0 ? AutomaticWeight / (inputs.Units.CoreEdgeLength() * contrast) : 0.0;
+  const double scale = inputs.Units.CoreEdgeLength() * contrast *
+    MeanFidelityFactor(inputs.Surface.Mesh(), input.Data);
+  return contrast > 0.0 ? AutomaticWeight / scale : 0.0;
+}
+
+/// Means would be those of outliers, and of the rest. Values count as outliers beyond the robust
+/// bounds of a component whose whole range is so many times as wide.
+constexpr double OutlierFactor = 3.0;
+
+/// Outliers become the bound that they are beyond.
+void LimitOutliers(double unit, PointData& data, RunResult& result)
+{
+  std::vector<double> known;
+  for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
+  {
+    known.clear();
+    ValueBounds all;
+    for (Eigen::Index i = 0; i < data.Given.rows(); ++i)
+    {
+      if (data.FidelityFactor(static_cast<Index>(i)) > 0.0)
+      {
+        known.push_back(data.Given(i, k));
+        all.Widen({ known.back(), known.back() });
+      }
+    }
+    const ValueBounds bounds = RobustBounds(known);
+    if (bounds.Width() > 0.0 && all.Width() > OutlierFactor * bounds.Width())
+    {
+      data.Given.col(k) = data.Given.col(k).cwiseMax(bounds.Low).cwiseMin(bounds.High);
+      result.WarnOnce(Sentence("the values reach from ")
+        << all.Low * unit << " to " << all.High * unit << ", but without the largest and the "
+        << "smallest 0.1 % of them only from " << bounds.Low * unit << " to " << bounds.High * unit
+        << ": the others count as outliers, and as these bounds");
+    }
+  }
 }
 
 void WarnOfEmptyRegions(const std::vector<Index>& components, RunResult& result)
@@ -188,8 +225,8 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
   visitor.Switch({ "AutomaticFidelity", "",
                    "Find the weight of the data from their contrast, which suits data with and "
                    "without noise: lambda = 0.6/(h D) with the contrast D of the data terms, the "
-                   "mean difference between the smallest two of a point. FidelityWeight is "
-                   "ignored." },
+                   "mean difference between the smallest two of a point, divided by the mean "
+                   "fidelity factor. FidelityWeight is ignored." },
     this->AutomaticFidelity);
   visitor.Number({ "FidelityWeight", "1/(h R^2)",
                    "lambda, the weight of the data against the length of the boundaries, 0 or "
@@ -281,6 +318,7 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
   input.Seeds = std::move(inputs.Seeds);
   if (!inputs.DataAreTerms && (this->AutomaticMeans || this->Means.empty()))
   {
+    LimitOutliers(inputs.Units.ValueUnit, input.Data, result);
     input.Means = FindRegionMeans(inputs.Surface.Mesh(), input.Data, this->NumberOfRegions,
       input.Seeds, this->RandomSeed, inputs.Ids, inputs.Parallel);
   }
