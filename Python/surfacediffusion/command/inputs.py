@@ -100,7 +100,8 @@ def read_values(path, surface, tables=True):
 
 
 def _read_table(path):
-    """The rows x, y, z, value, ... of a text file and the names of the values; None if it is none."""
+    """The rows x, y, z, value, ... of a text file, in this order, and the names of the values; None if it is
+    none."""
     if not re.search(r"\.(csv|tsv|txt)$", path, re.IGNORECASE):
         return None
     try:
@@ -129,7 +130,23 @@ def _read_table(path):
         rows.append(row)
     if not rows:
         raise FileError(f"{path}: no row of numbers; allowed: rows x, y, z, value")
-    return np.array(rows), names[3:] or [f"Value{k + 1}" for k in range(len(rows[0]) - 3)]
+    order = _order_of_columns(path, names) if names else list(range(len(rows[0])))
+    return np.array(rows)[:, order], [names[c] for c in order[3:]] if names else [
+        f"Value{k + 1}" for k in range(len(rows[0]) - 3)]
+
+
+def _order_of_columns(path, names):
+    """The columns of the coordinates and then the others: those named x, y, z, or Points:0, Points:1,
+    Points:2 as ParaView writes them; the first three if no name is one of these."""
+    short = [re.sub(r"^points[:_]([012])$", lambda found: "xyz"[int(found[1])], name.lower()) for name in names]
+    counts = [short.count(axis) for axis in "xyz"]
+    if not any(counts):
+        return list(range(len(names)))
+    if counts != [1, 1, 1]:
+        raise FileError(f"{path}: the line of names has {', '.join(names)}; allowed: each of x, y, z once, or "
+                        "none of them if they are the first three")
+    places = [short.index(axis) for axis in "xyz"]
+    return places + [c for c in range(len(names)) if c not in places]
 
 
 def choose_columns(data: Data, choices):
