@@ -33,10 +33,10 @@ void BlurSettings::Visit(SettingVisitor& visitor)
     this->FWHM, SettingRange::NonNegative());
   visitor.Integer({ "BlurSteps", "",
                     "Number of implicit steps that model the blur of BlurFWHM. With 4 its point "
-                    "spread function has the half maximum of a Gaussian but longer tails, so that "
-                    "waves as long as the width come back up to a third too high if the blur was "
-                    "that of heat flow. More steps are more similar to a Gaussian: 64 restore such "
-                    "waves to 1 %, and amplify noise more." },
+                    "spread function has the half maximum of a Gaussian but longer tails: if the "
+                    "blur was that of heat flow, waves of 1 to 2 widths come back up to half too "
+                    "high. More steps are more similar to a Gaussian, and amplify noise more: 64 "
+                    "restore waves of 1.5 widths to 2 %." },
     this->Steps, SettingRange::Between(2.0, 64.0, "2 to 64"));
 }
 
