@@ -367,6 +367,11 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
   task.NeedsMeanEdgeLength =
     this->RefineTo == RefineAutomatically && this->MayRefineAutomatically();
   task.MaximumNumberOfTriangles = this->MaximumNumberOfTriangles;
+  vtkInformation* const mask = this->GetInputArrayInformation(1);
+  if (mask->Has(vtkDataObject::FIELD_NAME()))
+  {
+    task.MaskName = mask->Get(vtkDataObject::FIELD_NAME());
+  }
   task.FindLength = [this](double meanEdgeLength, Sentence& explanation)
   { return this->FindRefinement(meanEdgeLength, explanation); };
   task.Complete = [this](const std::function<void()>& step)

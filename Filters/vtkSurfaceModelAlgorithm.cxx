@@ -314,8 +314,11 @@ void vtkSurfaceModelAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bl
     if (takesPart || this->FindFields(block.Input, arrays, here))
     {
       arrays.GlobalIds = block.Input->GetPointData()->GetGlobalIds();
-      arrays.Between = block.Input->GetPointData()->GetArray(PieceRefinement::BetweenName);
-      arrays.GivenCells = block.Input->GetCellData()->GetArray(PieceRefinement::GivenCellsName);
+      if (this->GetRefineTo() != 0.0)
+      {
+        arrays.Between = block.Input->GetPointData()->GetArray(PieceRefinement::BetweenName);
+        arrays.GivenCells = block.Input->GetCellData()->GetArray(PieceRefinement::GivenCellsName);
+      }
       surfaces.push_back(block);
       fields.push_back(arrays);
       found.push_back(here);

@@ -34,9 +34,10 @@ bool IsInteger(vtkDataArray* array)
   return array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
 }
 
-/// The array with a tuple more for each pair of parents.
+/// The array with a tuple more for each pair of parents. isMask: whether numbers other than 0 mean
+/// that a point is masked.
 vtkSmartPointer<vtkAbstractArray> Interpolate(
-  vtkAbstractArray* from, const std::vector<std::array<Index, 2>>& parents)
+  vtkAbstractArray* from, const std::vector<std::array<Index, 2>>& parents, bool isMask)
 {
   const vtkIdType count = from->GetNumberOfTuples();
   const auto more = static_cast<vtkIdType>(parents.size());
@@ -62,8 +63,12 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(
       const double first = numbers->GetComponent(a, k);
       const double second = numbers->GetComponent(b, k);
       const double mean = 0.5 * first + 0.5 * second;
+      const double mark = isMask && first == 0.0 ? second : first;
       numbers->SetComponent(count + i, k,
-        !rounds ? mean : (components == 1 ? std::min(first, second) : std::floor(mean + 0.5)));
+        isMask              ? mark
+          : !rounds         ? mean
+          : components == 1 ? std::min(first, second)
+                            : std::floor(mean + 0.5));
     }
   }
   return to;
@@ -71,7 +76,7 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(
 
 /// Arrays that do not have a tuple per point are left out. points: their number.
 void InterpolatePointData(vtkPointData* from, vtkIdType points, vtkPointData* to,
-  const std::vector<std::array<Index, 2>>& parents)
+  const std::vector<std::array<Index, 2>>& parents, const std::string& maskName)
 {
   for (int n = 0; n < from->GetNumberOfArrays(); ++n)
   {
@@ -81,7 +86,8 @@ void InterpolatePointData(vtkPointData* from, vtkIdType points, vtkPointData* to
     {
       continue;
     }
-    const int added = to->AddArray(Interpolate(array, parents));
+    const bool isMask = !maskName.empty() && array->GetName() && maskName == array->GetName();
+    const int added = to->AddArray(Interpolate(array, parents, isMask));
     if (role >= 0)
     {
       to->SetActiveAttribute(added, role);
@@ -175,7 +181,8 @@ void PieceRefinement::Bisect(Piece& piece, vtkPolyData* input, double length,
   piece.MaximumTriangles = maximumTriangles;
 }
 
-vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(const Piece& piece, vtkPolyData* input)
+vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(
+  const Piece& piece, vtkPolyData* input, const std::string& maskName)
 {
   auto surface = vtkSmartPointer<vtkPolyData>::New();
   surface->SetPoints(piece.Points);
@@ -183,8 +190,8 @@ vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(const Piece& piece, vt
   surface->SetLines(input->GetLines());
   surface->SetPolys(piece.Triangles);
   surface->GetFieldData()->ShallowCopy(input->GetFieldData());
-  InterpolatePointData(
-    input->GetPointData(), input->GetNumberOfPoints(), surface->GetPointData(), piece.Parents);
+  InterpolatePointData(input->GetPointData(), input->GetNumberOfPoints(), surface->GetPointData(),
+    piece.Parents, maskName);
   const vtkIdType others = input->GetNumberOfVerts() + input->GetNumberOfLines();
   const auto ids =
     NewArray<vtkIdTypeArray>(IdsName, 1, others + static_cast<vtkIdType>(piece.CellOf.size()));
@@ -240,7 +247,7 @@ double PieceRefinement::Bisect(const std::vector<SurfacePiece>& pieces, double l
   return longest;
 }
 
-Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces)
+Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces, const std::string& maskName)
 {
   Index triangles = 0;
   for (std::size_t p = 0; p < pieces.size(); ++p)
@@ -250,7 +257,7 @@ Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces)
     auto surface = vtkSmartPointer<vtkPolyData>::New();
     if (piece.Points)
     {
-      surface = MakeSurface(piece, input);
+      surface = MakeSurface(piece, input, maskName);
       pieces[p].Output->ShallowCopy(surface);
       triangles += static_cast<Index>(piece.CellOf.size());
     }

@@ -10,6 +10,7 @@
 #include "vtkSmartPointer.h"
 
 #include <array>
+#include <string>
 #include <vector>
 
 class vtkCellArray;
@@ -27,8 +28,8 @@ class PieceRefinement
 public:
   /// The cell of the input that each cell of a refined surface lies in.
   static constexpr const char* IdsName = "vtkOriginalCellIds";
-  /// Of the inputs during an update, not of their outputs: per point, 1 in the middle of an edge that
-  /// was bisected; per cell, the cell of the input that it was cut from.
+  /// Of the inputs during an update, not of their outputs: per point, 1 in the middle of an edge
+  /// that was bisected; per cell, the cell of the input that it was cut from.
   static constexpr const char* BetweenName = "surface diffusion between";
   static constexpr const char* GivenCellsName = "surface diffusion given cell";
 
@@ -48,13 +49,14 @@ public:
   double Bisect(const std::vector<SurfacePiece>& pieces, double length, Index maximumTriangles,
     const ProgressMonitor& progress);
 
-  /// Replace the inputs of the pieces that were bisected, and make their outputs copies of them. Mark
-  /// what was measured in all inputs.
-  /// Arrays of points are linear along the edges that are bisected, except that integers of one
-  /// component, which are labels and marks, become the smaller of two. Triangles have the data of
-  /// their cells. Global ids, ghost cells and hidden cells are left out. Returns the number of
-  /// triangles of the pieces that were replaced.
-  Index Replace(std::vector<SurfacePiece>& pieces);
+  /// Replace the inputs of the pieces that were bisected, and make their outputs copies of them.
+  /// Mark what was measured in all inputs. Arrays of points are linear along the edges that are
+  /// bisected, except that integers of one component, which are labels and marks, become the
+  /// smaller of two, and the mask of this name the one that is not 0: what is between a masked
+  /// point and another one is masked. Triangles have the data of their cells. Global ids, ghost
+  /// cells and hidden cells are left out. Returns the number of triangles of the pieces that were
+  /// replaced.
+  Index Replace(std::vector<SurfacePiece>& pieces, const std::string& maskName);
 
   /// Make the outputs copies of the inputs that were replaced since Begin().
   void Undo();
@@ -84,7 +86,8 @@ private:
   Piece& Find(std::size_t number, vtkPolyData* input);
   static void Bisect(Piece& piece, vtkPolyData* input, double length, Index maximumTriangles,
     const ProgressMonitor& progress);
-  static vtkSmartPointer<vtkPolyData> MakeSurface(const Piece& piece, vtkPolyData* input);
+  static vtkSmartPointer<vtkPolyData> MakeSurface(
+    const Piece& piece, vtkPolyData* input, const std::string& maskName);
   static void MarkMeasured(const Piece& piece, vtkIdType points, vtkPolyData* surface);
 
   std::vector<Piece> Pieces;

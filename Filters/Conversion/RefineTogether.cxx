@@ -61,7 +61,8 @@ bool RefineTogether(PieceRefinement& refinement, std::vector<SurfacePiece>& piec
         completed = task.Complete(bisect);
       }
     }
-    completed = completed && task.Complete([&] { triangles = refinement.Replace(pieces); });
+    completed =
+      completed && task.Complete([&] { triangles = refinement.Replace(pieces, task.MaskName); });
     triangles = Sum(processes, triangles);
   }
   if (triangles > 0.0 && !reason.Words().empty())

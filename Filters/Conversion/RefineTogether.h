@@ -7,6 +7,7 @@
 #include "Run/Sentence.h"
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -17,6 +18,7 @@ struct RefinementTask
 {
   bool NeedsMeanEdgeLength = false; ///< for FindLength, which is given 0 otherwise
   int MaximumNumberOfTriangles = 0; ///< of a piece
+  std::string MaskName; ///< of an array of points; empty if there is none
   /// The length above which edges are bisected; 0: the surfaces stay as they are. It appends to the
   /// explanation what a warning should say of the reason.
   std::function<double(double meanEdgeLength, Sentence& explanation)> FindLength;
@@ -24,8 +26,9 @@ struct RefinementTask
   std::function<bool(const std::function<void()>& step)> Complete;
 };
 
-/// Bisect the long edges of the pieces and replace these. Appends warnings. False, in all processes:
-/// one was aborted or has failed, and the pieces of the outputs are the given ones. Collective.
+/// Bisect the long edges of the pieces and replace these. Appends warnings. False, in all
+/// processes: one was aborted or has failed, and the pieces of the outputs are the given ones.
+/// Collective.
 bool RefineTogether(PieceRefinement& refinement, std::vector<SurfacePiece>& pieces,
   const RefinementTask& task, const Processes& processes, const ProgressMonitor& progress,
   std::vector<Sentence>& warnings);

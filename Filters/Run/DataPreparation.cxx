@@ -86,15 +86,23 @@ double FindCellNoiseGain(const ModelInputs& inputs)
     next += number == next ? 1 : 0;
     noise(c, 0) = std::sqrt(3.0) * (2.0 * UniformRandom(0, 0, number) - 1.0); // of deviation 1
   }
-  const double found = EstimateBetweenNeighbours(
-    inputs, PointData::FromValues(cells.ToVertices(noise, Vector::Ones(noise.rows())).Of));
-  return found > 0.0 ? cells.NoiseGain(inputs.GivenCells) / found : 0.0;
+  PointData data = PointData::FromValues(cells.ToVertices(noise, Vector::Ones(noise.rows())).Of);
+  data.Measured = inputs.Data.Measured;
+  const double found = EstimateBetweenNeighbours(inputs, data);
+  return found > 0.0 ? NoiseGain(inputs) / found : 0.0;
+}
+
+double NoiseGain(const ModelInputs& inputs)
+{
+  const auto& measured = inputs.Data.Measured;
+  return inputs.Cells
+    ? inputs.Cells->NoiseGain(inputs.GivenCells, measured ? measured->IsBetween : Flags())
+    : 1.0;
 }
 
 double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel)
 {
-  return noiseLevel / inputs.Units.ValueUnit *
-    (inputs.Cells ? inputs.Cells->NoiseGain(inputs.GivenCells) : 1.0);
+  return noiseLevel / inputs.Units.ValueUnit * NoiseGain(inputs);
 }
 
 void DescribeData(const DataSettings& settings, ModelTraits& traits)
@@ -160,6 +168,19 @@ CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& input
     ? AnisotropicWeights(mesh, isotropic, inputs.Directions, settings.AlongDiffusivity,
         settings.AcrossDiffusivity, inputs.Parallel)
     : CornerWeights(settings.AlongDiffusivity * isotropic);
+}
+
+double MeanFidelityFactor(const TriangleMesh& mesh, const PointData& data)
+{
+  double sum = 0.0;
+  double area = 0.0;
+  for (Index i = 0; i < mesh.NumberOfVertices() && data.FidelityFactors.size() > 0; ++i)
+  {
+    const double factor = data.FidelityFactor(i);
+    sum += mesh.ControlAreas()[i] * factor;
+    area += factor > 0.0 ? mesh.ControlAreas()[i] : 0.0;
+  }
+  return sum > 0.0 ? sum / area : 1.0;
 }
 
 double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, int steps,

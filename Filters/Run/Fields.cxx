@@ -3,7 +3,6 @@
 #include "Run/Fields.h"
 
 #include "Core/Foundation/Random.h"
-#include "Core/Statistics/MeasuredVertices.h"
 #include "Core/Surface/TangentVectors.h"
 
 #include <algorithm>
@@ -39,27 +38,6 @@ std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields
   }
   std::replace(seeds.begin(), seeds.end(), several, none);
   return seeds;
-}
-
-/// A vertex of merged points is in between if all of them are.
-MeasuredVertices FindMeasured(const Surface& surface, const Fields& fields)
-{
-  const std::vector<Index>& rows = surface.Mesh().InputVertex();
-  Points points(static_cast<Eigen::Index>(rows.size()), 3);
-  for (std::size_t v = 0; v < rows.size(); ++v)
-  {
-    points.row(static_cast<Eigen::Index>(v)) = surface.Points().row(rows[v]);
-  }
-  Flags isBetween = Flags::Constant(points.rows(), true);
-  for (std::size_t i = 0; i < fields.Between.size(); ++i)
-  {
-    const Index v = surface.VertexOf(static_cast<Index>(i));
-    if (v >= 0 && !fields.Between[i])
-    {
-      isBetween[v] = false;
-    }
-  }
-  return FindMeasuredVertices(surface.SharedAssembler()->Pattern(), points, std::move(isBetween));
 }
 
 } // namespace
@@ -235,6 +213,15 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   data.Fixed = Flags::Constant(n, false);
   Values damaged; // the values of vertices without any known point, if there are such
   std::vector<Index> known(static_cast<std::size_t>(n), 0);
+  std::vector<char> isGiven(fields.Between.empty() ? 0 : static_cast<std::size_t>(n), 0);
+  for (std::size_t i = 0; i < fields.Between.size(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0 && !fields.Between[i])
+    {
+      isGiven[static_cast<std::size_t>(v)] = 1;
+    }
+  }
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
     if (values.row(i).array().isInf().any())
@@ -242,9 +229,9 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
       throw ErrorAt(fields.DataName, "is infinite", false, i, "allowed: finite values and NaN");
     }
     const Index v = surface.VertexOf(static_cast<Index>(i));
-    if (v < 0)
+    if (v < 0 || (IsSet(fields.Between, i) && IsSet(isGiven, v)))
     {
-      continue;
+      continue; // a point on an edge that another triangle's corner is merged with
     }
     const bool isFixed = IsSet(fields.Fixed.Values, i);
     const bool isNaN = IsSet(fields.Missing, i) || values.row(i).hasNaN();
@@ -284,13 +271,34 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   {
     data.FidelityFactors = MakeFidelityFactors(surface, fields);
   }
+  return data;
+}
+
+std::shared_ptr<const MeasuredVertices> FindMeasured(const Surface& surface, const Fields& fields)
+{
   const bool anyBetween = std::any_of(
     fields.Between.begin(), fields.Between.end(), [](char between) { return between != 0; });
-  if (anyBetween && surface.Mesh().GetReduction().IsSerial())
+  if (!anyBetween || !surface.Mesh().GetReduction().IsSerial())
   {
-    data.Measured = std::make_shared<const MeasuredVertices>(FindMeasured(surface, fields));
+    return nullptr;
   }
-  return data;
+  const std::vector<Index>& rows = surface.Mesh().InputVertex();
+  Points places(static_cast<Eigen::Index>(rows.size()), 3);
+  for (std::size_t v = 0; v < rows.size(); ++v)
+  {
+    places.row(static_cast<Eigen::Index>(v)) = surface.Points().row(rows[v]);
+  }
+  Flags isBetween = Flags::Constant(places.rows(), true);
+  for (std::size_t i = 0; i < fields.Between.size(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0 && !fields.Between[i])
+    {
+      isBetween[v] = false;
+    }
+  }
+  return std::make_shared<const MeasuredVertices>(
+    FindMeasuredVertices(surface.SharedAssembler()->Pattern(), places, std::move(isBetween)));
 }
 
 TangentVectors MakeInputDirections(

@@ -5,6 +5,7 @@
 #include "Core/Foundation/Reduction.h"
 #include "Core/Foundation/RobustRange.h"
 #include "Core/Models/Model.h"
+#include "Core/Statistics/MeasuredVertices.h"
 #include "Run/Located.h"
 #include "Run/PointSamples.h"
 #include "Run/RunSettings.h"
@@ -113,9 +114,14 @@ std::vector<char> FindParticipatingRows(const Surface& surface, const Fields& fi
 
 /// Given, Missing and Fixed of the vertices, of data on points, with values divided by `unit`.
 /// Points that are merged into one vertex give it the mean of the known ones, and their mean
-/// fidelity factor. Throws std::runtime_error on infinite values, on points that are fixed at NaN,
-/// and on fidelity factors that are negative or not finite.
+/// fidelity factor; those in between do not count beside given ones. Throws std::runtime_error on
+/// infinite values, on points that are fixed at NaN, and on fidelity factors that are negative or
+/// not finite.
 PointData MakePointData(const Surface& surface, const Fields& fields, bool inpaint, double unit);
+
+/// The vertices of given points, also for data on cells: those of merged points are, unless all of
+/// them are in between. Null if all vertices are. Costs a pass over the surface.
+std::shared_ptr<const MeasuredVertices> FindMeasured(const Surface& surface, const Fields& fields);
 
 /// e1 on the triangles of surface.InputMesh(); no row if there are no directions.
 TangentVectors MakeInputDirections(

@@ -90,6 +90,7 @@ ModelTraits HeatSettings::DescribeModel() const
   traits.ResultSuffix = "Diffused";
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
+  traits.EstimatesNoise = this->FindsFidelity();
   traits.CanBeDistributed = !this->FindsFidelity() && !this->Blur.IsOn();
   DescribeData(*this, traits);
   return traits;

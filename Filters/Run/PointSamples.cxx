@@ -7,6 +7,8 @@
 #include "Run/Fields.h"
 #include "Run/Surface.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -108,8 +110,8 @@ private:
   std::vector<double> Weights;
 };
 
-/// Of merged points, those with the values and the weight of an earlier one are copies of it: what was
-/// measured once may be stored with every triangle.
+/// Of merged points, those with the values and the weight of an earlier one are copies of it: what
+/// was measured once may be stored with every triangle.
 class FirstCopies
 {
 public:
@@ -153,64 +155,71 @@ private:
   std::vector<Index> Before; ///< per point: that before it at the same vertex
 };
 
-/// Of the cells that were cut from one, only the value of the cell nearest to its middle is kept.
-void LeaveOneOfEach(
-  const Surface& surface, const Fields& fields, std::vector<SurfacePoint>& middles)
+/// Of the cells that were cut from one, the one that the middle of that lies in has it as its
+/// place, and the vertices of the others are -1.
+void MergePlaces(const Surface& surface, const Fields& fields, std::vector<SurfacePoint>& places)
 {
-  struct Given
+  struct GivenCell
   {
     Eigen::RowVector3d Moment = Eigen::RowVector3d::Zero();
     double Area = 0.0;
-    double Least = std::numeric_limits<double>::infinity();
-    Index Nearest = -1;
+    double Inside = -std::numeric_limits<double>::infinity(); ///< the least coordinate
+    std::size_t Cell = 0;
+    SurfacePoint Place;
   };
-  std::map<Index, Given> ofCells;
+  std::map<Index, GivenCell> givenCells;
   const TriangleMesh& mesh = surface.InputMesh();
-  const auto pointOf = [&](Index vertex)
-  { return surface.Points().row(mesh.InputVertex()[static_cast<std::size_t>(vertex)]); };
-  for (Index t = 0; t < mesh.NumberOfTriangles() && !fields.GivenCells.empty(); ++t)
+  const auto cellOf = [&](Index t)
   {
     const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
-    const Index cell = fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))];
-    Given& given = ofCells[fields.GivenCells[static_cast<std::size_t>(cell)]];
+    return static_cast<std::size_t>(
+      fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))]);
+  };
+  const auto corner = [&](Index t, int a) -> Eigen::RowVector3d
+  {
+    const auto vertex = static_cast<std::size_t>(mesh.TriangleVertices()(t, a));
+    return surface.Points().row(mesh.InputVertex()[vertex]);
+  };
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    GivenCell& given = givenCells[fields.GivenCells[cellOf(t)]];
     const double area = mesh.Shapes()[static_cast<std::size_t>(t)].Area();
-    for (int a = 0; a < 3; ++a)
-    {
-      given.Moment += area / 3.0 * pointOf(mesh.TriangleVertices()(t, a));
-    }
+    given.Moment += area / 3.0 * (corner(t, 0) + corner(t, 1) + corner(t, 2));
     given.Area += area;
   }
-  const auto forEach = [&](const auto& f)
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    for (std::size_t c = 0; c < fields.GivenCells.size(); ++c)
+    GivenCell& given = givenCells[fields.GivenCells[cellOf(t)]];
+    Eigen::Matrix<double, 3, 2> sides;
+    sides.col(0) = (corner(t, 1) - corner(t, 0)).transpose();
+    sides.col(1) = (corner(t, 2) - corner(t, 0)).transpose();
+    const Eigen::Vector3d offset = (given.Moment / given.Area - corner(t, 0)).transpose();
+    const Eigen::Vector2d x = (sides.transpose() * sides).ldlt().solve(sides.transpose() * offset);
+    const Eigen::Array3d coordinates(1.0 - x.sum(), x[0], x[1]);
+    if (coordinates.minCoeff() > given.Inside)
     {
-      if (middles[c].Vertices[0] >= 0)
+      given.Inside = coordinates.minCoeff();
+      given.Cell = cellOf(t);
+      const Eigen::Array3d within = coordinates.max(0.0) / coordinates.max(0.0).sum();
+      for (std::size_t a = 0; a < 3; ++a)
       {
-        f(static_cast<Index>(c), ofCells[fields.GivenCells[c]]);
+        given.Place.Vertices[a] = mesh.TriangleVertices()(t, static_cast<Eigen::Index>(a));
+        given.Place.Coordinates[a] = within[static_cast<Eigen::Index>(a)];
       }
     }
-  };
-  forEach(
-    [&](Index cell, Given& given)
-    {
-      const std::array<Index, 3>& corners = middles[static_cast<std::size_t>(cell)].Vertices;
-      const Eigen::RowVector3d middle =
-        (pointOf(corners[0]) + pointOf(corners[1]) + pointOf(corners[2])) / 3.0;
-      const double distance = (middle - given.Moment / given.Area).norm();
-      given.Nearest = distance < given.Least ? cell : given.Nearest;
-      given.Least = std::min(given.Least, distance);
-    });
-  forEach(
-    [&](Index cell, const Given& given)
-    {
-      middles[static_cast<std::size_t>(cell)].Vertices[0] =
-        given.Nearest == cell ? middles[static_cast<std::size_t>(cell)].Vertices[0] : -1;
-    });
+  }
+  for (SurfacePoint& place : places)
+  {
+    place.Vertices.fill(-1);
+  }
+  for (const auto& [number, given] : givenCells)
+  {
+    places[given.Cell] = given.Place;
+  }
 }
 
 /// The middle of the largest triangle of each cell, of the first one among triangles of equal size,
-/// as those of a square; the vertices of cells without one are -1. Of the cells that were cut from
-/// one, those of the others are -1, too.
+/// as those of a square; the vertices of cells without one are -1. See MergePlaces().
 std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& fields)
 {
   constexpr double equal = 1e-9; // round-off must not choose
@@ -235,7 +244,10 @@ std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& f
       }
     }
   }
-  LeaveOneOfEach(surface, fields, middles);
+  if (!fields.GivenCells.empty())
+  {
+    MergePlaces(surface, fields, middles);
+  }
   return middles;
 }
 

@@ -194,6 +194,10 @@ void Run::MakeModel(
   block.FinishedStep = -1;
   block.Solvers.Configure(this->Settings->DescribeModel(), this->Parallel);
   PointData data = this->MakeData(block, fields, processes);
+  if (this->Settings->DescribeModel().EstimatesNoise && block.HasData)
+  {
+    data.Measured = FindMeasured(*block.Surface, fields);
+  }
   ModelInputs inputs{ *block.Surface, block.Units, std::move(data), std::move(directions),
     fields.Rates,
     this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields)

@@ -56,8 +56,8 @@ struct FieldSummary
   bool StartTimes = false;
 };
 
-/// Append a problem if factors along and across a direction differ and there are no directions. along,
-/// across: the names of their settings.
+/// Append a problem if factors along and across a direction differ and there are no directions.
+/// along, across: the names of their settings.
 void RequireDirections(const FieldSummary& fields, const char* along, double ofAlong,
   const char* across, double ofAcross, Problems& problems);
 
@@ -83,6 +83,7 @@ struct ModelTraits
   bool StateHasUnitOfValues = true; ///< false: u is a pure number
   bool UsesFidelity = false;
   bool UsesKnownValues = false; ///< see KnownValues; the data may be samples
+  bool EstimatesNoise = false; ///< needs PointData::Measured
   double MaximumDistance = 0.0; ///< of samples from the surface; 0: any
   bool NeedsDirections = false; ///< diffusivities along and across differ
   bool HoldsKnownValues = false;

@@ -47,8 +47,8 @@ public:
 
 protected:
   /// ofDegenerate: what becomes of triangles of zero area, such as "have no normal". ofCoincident:
-  /// what follows if points of the boundary coincide with others, which they are not merged with, such
-  /// as " and may come apart"; null: there is no warning.
+  /// what follows if points of the boundary coincide with others, which they are not merged with,
+  /// such as " and may come apart"; null: there is no warning.
   SurfaceRun(const ParallelFor& parallel, const char* ofDegenerate, const char* ofCoincident)
     : Parallel(parallel)
     , OfDegenerate(ofDegenerate)

@@ -214,6 +214,7 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   traits.SettingsInRange = this->FindSettingsInRange();
   traits.Energy = dimensionless ? Dimension{ 0.0, 2.0 } : Dimension{ 1.0, 1.0 };
   traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
+  traits.EstimatesNoise = this->FindsFidelity();
   traits.CanBeDistributed = !this->FindsFidelity() &&
     this->Discretization == SurfaceDiffusion::Discretization::Linear && !this->Blur.IsOn();
   traits.UsesLinearLight = this->Color.UsesLinearLight();

@@ -71,8 +71,9 @@ class RefinedSurface:
         return array[self.faces]
 
 
-def interpolate_points(array: NDArray[Any], parents: NDArray[Any]) -> NDArray[Any]:
-    """Data (n, ...) of points, and between them: row n + i belongs to the middle of the two parents i."""
+def interpolate_points(array: NDArray[Any], parents: NDArray[Any], mask: bool = False) -> NDArray[Any]:
+    """Data (n, ...) of points, and between them: row n + i belongs to the middle of the two parents i. mask:
+    whether they are a mask, of which what is between a masked point and another one is masked."""
     n = len(array)
     is_mark = array.dtype.kind != "f" and array.size == len(array)
     found = np.empty((n + len(parents), *array.shape[1:]), dtype=array.dtype)
@@ -83,7 +84,9 @@ def interpolate_points(array: NDArray[Any], parents: NDArray[Any]) -> NDArray[An
     while known < len(parents):
         end = int(np.searchsorted(newest, n + known))
         first, second = parents[known:end].T
-        if is_mark:
+        if mask:
+            found[n + known:n + end] = np.where(found[first] == 0, found[second], found[first])
+        elif is_mark:
             found[n + known:n + end] = np.minimum(found[first], found[second])
         else:
             mean = 0.5 * found[first] + 0.5 * found[second]
@@ -250,7 +253,7 @@ def document_keywords(function: str) -> str:
 
 
 #: The functions that ask which of the data were measured.
-ESTIMATING = ("heat", "intrinsic_tv", "mumford_shah", "tensor_diffusion", "interpolate")
+ESTIMATING = ("heat", "intrinsic_tv", "mumford_shah", "interpolate")
 
 #: The arguments with rows of points or faces. The first are where on_faces says, if it is given.
 _DATA = ("values", "terms", "vectors")
@@ -284,8 +287,10 @@ def take_along(
                              f"are {n}, or per face, {m}")
         if on_faces:
             carried[name] = fine.at_faces(array)
-        elif name == "roi":  # a point between the inside and the outside is inside, as that of a mask
-            carried[name] = ~fine.at_points(~array)
+        elif name == "roi":  # what is between a masked point and another one is masked
+            carried[name] = fine.at_points(array)
+        elif name == "mask":
+            carried[name] = interpolate_points(array, fine.parents, mask=True)
         else:
             carried[name] = fine.at_points(array)
         if name in _DATA and "on_faces" in given:

@@ -137,7 +137,7 @@ def relief(
     (0, 0, 21.0)
     """
     surface, rows, _ = take_along(surface, "relief", refine_to, maximum_number_of_triangles,
-                               {"values": values, "mask": mask})
+                                  {"values": values, "mask": mask})
     array, mask = as_numbers("values", rows["values"]), rows["mask"]
     n = surface.n_points
     if array.shape != (n,):

@@ -72,7 +72,9 @@ from ._meshes import find_polydata
 from ._models import (
     ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
 )
-from ._refinement import ESTIMATING, RefinedSurface, keywords_of, refine_as_asked
+from ._refinement import (
+    ESTIMATING, RefinedSurface, interpolate_points, keywords_of, refine_as_asked,
+)
 from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
     TensorDiffusionResult, TextureResult,
@@ -545,6 +547,10 @@ class _Block:
         if name is None:
             return None, False
         if points and name in self.mesh.point_data:
+            if self.refined is not None and argument == "mask" and name in self.origin.point_data:
+                # What is between a masked point and another one is masked.
+                given = np.asarray(self.origin.point_data[name])
+                return interpolate_points(given, self.refined.parents, mask=True), False
             return np.asarray(self.mesh.point_data[name]), False
         if faces and name in self.mesh.cell_data:
             return np.asarray(self.mesh.cell_data[name])[self.face_cells], True

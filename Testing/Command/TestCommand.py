@@ -27,6 +27,8 @@ from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
 INSIDE = POINTS[:, 2] > -6
+#: How the commands that smooth call heat()
+ONE_STEP = {"time_integrator": "Exponential", "number_of_time_steps": 1}
 
 
 class CommandTest(unittest.TestCase):
@@ -56,7 +58,7 @@ class Smooth(CommandTest):
     def test_the_result_is_that_of_heat(self):
         self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii")
         expected = heat(self.surface, np.column_stack([NOISE, SMOOTH]), fwhm=5,
-                        number_of_time_steps=3)
+                        **ONE_STEP)
         np.testing.assert_array_equal(read_data("out.func.gii").parts[0].values, expected)
 
     def test_words_of_workbench_are_understood(self):
@@ -88,7 +90,7 @@ class Smooth(CommandTest):
         self.succeed("smooth lh.surf.gii nan.func.gii 5 a.func.gii")
         self.succeed("smooth lh.surf.gii zero.func.gii 5 b.func.gii --fix-zeros")
         self.succeed("smooth lh.surf.gii zero.func.gii 5 c.func.gii")
-        full = heat(self.surface, SMOOTH, fwhm=5, number_of_time_steps=3)
+        full = heat(self.surface, SMOOTH, fwhm=5, **ONE_STEP)
         found = self.column("a.func.gii")
         np.testing.assert_array_equal(found, self.column("b.func.gii"))
         self.assertLess(np.abs(found - full).max(), 0.05)
@@ -127,7 +129,7 @@ class Smooth(CommandTest):
         samples.write_label("a.label", vertices, NOISE[vertices])
         self.succeed("smooth lh.surf.gii a.label 5 b.label")
         expected = heat(self.surface, np.where(INSIDE, NOISE, 0), mask=~INSIDE,
-                        mask_mode="Exclude", fwhm=5, number_of_time_steps=3)
+                        mask_mode="Exclude", fwhm=5, **ONE_STEP)
         np.testing.assert_allclose(self.column("b.label"), expected[vertices], atol=1e-5)
 
     def test_each_hemisphere_of_cifti_has_its_surface(self):
@@ -138,10 +140,10 @@ class Smooth(CommandTest):
         self.succeed("smooth --left lh.surf.gii --right rh.surf.gii a.dscalar.nii 5 b.dscalar.nii")
         found = np.asarray(nib.load("b.dscalar.nii").dataobj)
         expected = heat(self.surface, np.where(INSIDE, NOISE, 0), mask=~INSIDE,
-                        mask_mode="Exclude", fwhm=5, number_of_time_steps=3)[left]
+                        mask_mode="Exclude", fwhm=5, **ONE_STEP)[left]
         np.testing.assert_array_equal(found[0, :len(left)], expected)
         right = Surface(read_surface("rh.surf.gii").points, FACES)
-        expected = heat(right, NOISE, fwhm=5, number_of_time_steps=3)
+        expected = heat(right, NOISE, fwhm=5, **ONE_STEP)
         np.testing.assert_array_equal(found[1, len(left):], expected)
 
     def test_freesurfer_files(self):
@@ -176,11 +178,11 @@ class Smooth(CommandTest):
     def test_more_steps_approach_the_solution(self):
         errors = []
         exact = heat(self.surface, NOISE, fwhm=5, number_of_time_steps=300)
-        for steps in (1, 3, 30):
+        for steps in (1, 30):
             self.succeed(f"smooth lh.surf.gii lh.func.gii 5 out.func.gii --steps {steps}")
             errors.append(np.abs(self.column("out.func.gii") - exact).max())
+        self.assertLess(errors[0], 0.003)  # of noise of 1
         self.assertGreater(errors[0], 3 * errors[1])
-        self.assertGreater(errors[1], 3 * errors[2])
 
 
 class OtherCommands(CommandTest):
@@ -244,7 +246,7 @@ class OtherCommands(CommandTest):
         report = self.report("smooth lh.surf.gii faces.npy 5 out.npy --faces --roi region.npy")
         inside = centres[:, 2] > -6
         expected = heat(self.surface, np.where(inside[:, None], values, 0), mask=~inside,
-                        mask_mode="Exclude", fwhm=5, number_of_time_steps=3)
+                        mask_mode="Exclude", fwhm=5, **ONE_STEP)
         np.testing.assert_array_equal(np.load("out.npy"), np.where(inside[:, None], expected, 0))
         self.assertEqual(report["columns"][0]["excluded"], (~inside).sum())
         report = self.report("smooth lh.surf.gii faces.npy 5 out.npy --faces")
@@ -272,7 +274,7 @@ class OtherCommands(CommandTest):
         before, after = read_data("b.vtp", True), read_data("c.vtp", True)
         self.assertEqual(after.names, ["g", "h"])
         np.testing.assert_array_equal(after.parts[0].values[:, 1], noise)
-        expected = heat((POINTS, FACES), noise, fwhm=5, number_of_time_steps=3)
+        expected = heat((POINTS, FACES), noise, fwhm=5, **ONE_STEP)
         np.testing.assert_allclose(after.parts[0].values[:, 0], expected, atol=1e-12)
         np.testing.assert_array_equal(read_data("c.vtp").parts[0].values,
                                       read_data("b.vtp").parts[0].values)
@@ -336,6 +338,19 @@ class OtherCommands(CommandTest):
         errors = np.load("errors.npy").ravel()
         self.assertGreater(errors.max(), 0.0)
         self.assertLess(errors[::5].max(), 0.2 * errors.max())
+
+    def test_interpolate_finds_coordinates_by_their_names(self):
+        places = POINTS[::5]
+        for names in ("height,x,y,z", "height,Points:0,Points:1,Points:2", "height,X,Y,Z"):
+            rows = [f"{z:.17g},{x:.17g},{y:.17g},{z:.17g}" for x, y, z in places]
+            Path("values.csv").write_text(names + "\n" + "\n".join(rows) + "\n")
+            report = self.report("interpolate lh.surf.gii values.csv out.shape.gii --exact")
+            self.assertEqual([column["name"] for column in report["columns"]], ["height"])
+            self.assertLess(abs(self.column("out.shape.gii")[::5] - places[:, 2]).max(), 1e-4)
+        Path("values.csv").write_text("height,x,y,h\n1,0,0,10\n2,0,0,-10\n")
+        code, _, error = run(*"interpolate lh.surf.gii values.csv out.shape.gii".split())
+        self.assertEqual(code, 2)
+        self.assertIn("the line of names has height, x, y, h; allowed: each of x, y, z once", error)
 
     def test_interpolate_takes_values_at_vertices(self):
         sparse = np.where(np.arange(N) % 4 == 0, SMOOTH, np.nan)
@@ -615,7 +630,7 @@ class OtherCommands(CommandTest):
         self.succeed("smooth a.vtp a.vtp 5 b.vtp --column f")
         found = read_data("b.vtp")
         self.assertEqual(found.names, ["f", "g"])
-        expected = heat((POINTS, FACES), NOISE.astype(float), fwhm=5, number_of_time_steps=3)
+        expected = heat((POINTS, FACES), NOISE.astype(float), fwhm=5, **ONE_STEP)
         np.testing.assert_array_equal(found.parts[0].values[:, 0], expected)
         np.testing.assert_array_equal(found.parts[0].values[:, 1], SMOOTH)
         self.succeed("directions a.vtp c.vtp")

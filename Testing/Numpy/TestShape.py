@@ -165,6 +165,8 @@ class RefineTo(unittest.TestCase):
         options = {name: arrays.pop(name) for name in list(arrays) if np.ndim(arrays[name]) == 0}
         carried = {name: (self.fine.at_faces if len(array) == self.ball.n_faces
                           else self.fine.at_points)(array) for name, array in arrays.items()}
+        if len(arrays.get("mask", ())) == self.ball.n_points:  # between a masked point and another one: masked
+            carried["mask"] = ~self.fine.at_points(arrays["mask"] == 0)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             found = function(self.ball, refine_to=0.25, **arrays, **options)
@@ -201,6 +203,16 @@ class RefineTo(unittest.TestCase):
         same = sd.heat(self.ball, z, fwhm=0.5, mask=(z <= 0).astype(int), mask_mode="Exclude", refine_to=0.25)
         np.testing.assert_array_equal(found, same)
 
+    def test_masked_values_reach_no_point_beside_them(self):
+        ball = sd.sphere(2)
+        mask = ball.points[:, 2] > 0.8
+        values = np.where(mask, 1e6, ball.points[:, 0])
+        fine = sd.refine(ball, 0.1)
+        for mode in ("Inpaint", "Exclude"):
+            found = sd.heat(ball, values, mask=mask.astype(int), mask_mode=mode, fwhm=0.3, refine_to=0.1)
+            outside = fine.at_points(~mask)
+            self.assertLess(np.abs(found[outside]).max(), 1.0)
+
     def test_values_between_measured_ones_are_no_measurements(self):
         ball = sd.sphere(4)
         random, z = np.random.default_rng(0), ball.points[:, 2]
@@ -222,7 +234,7 @@ class RefineTo(unittest.TestCase):
             sd.interpolate(ball, noisy, refine_to=0.03).values, sd.interpolate(fine.surface, unknown).values)
         for function in (sd.heat, sd.intrinsic_tv):
             smooth = function(ball, noisy, mode="SteadyState", automatic_fidelity=True, refine_to=0.03)
-            self.assertLess(np.sqrt(np.mean((smooth[:len(z)] - 2 * z) ** 2)), 0.1)
+            self.assertLess(np.sqrt(np.mean((smooth[:len(z)] - 2 * z) ** 2)), 0.12)
 
     def test_values_at_other_places_stay(self):
         places = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]])

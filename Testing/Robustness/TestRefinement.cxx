@@ -24,7 +24,7 @@ struct Spheres
   vtkSmartPointer<vtkPolyData> Coarse = Sphere(1);
   vtkNew<vtkPolyData> Fine;
 
-  Spheres()
+  explicit Spheres(bool hasMask)
   {
     AddRough(this->Coarse);
     AddArraysOfAllFilters(this->Coarse);
@@ -32,6 +32,10 @@ struct Spheres
     vtkNew<vtkSurfaceReliefFilter> relief;
     relief->SetInputData(this->Coarse);
     SetInputArray(relief, 0, "none");
+    if (hasMask)
+    {
+      SetInputArray(relief, 1, "mask"); // what is between a masked point and another one is masked
+    }
     relief->SetRefineTo(Length);
     relief->Update();
     this->Fine->ShallowCopy(relief->GetOutput());
@@ -78,8 +82,10 @@ vtkSmartPointer<vtkPolyData> BoxPart(bool upper)
 
 TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
 {
-  static const Spheres spheres;
   const auto refining = this->GetParam().Make();
+  static const Spheres withoutMask(false), withMask(true);
+  const bool hasMask = refining->GetInputArrayInformation(1)->Has(vtkDataObject::FIELD_NAME());
+  const Spheres& spheres = hasMask ? withMask : withoutMask;
   const auto given = this->GetParam().Make();
   vtkSurfaceFilter::SafeDownCast(refining)->SetRefineTo(Length);
   refining->SetInputData(spheres.Coarse);
@@ -97,8 +103,8 @@ TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
   EXPECT_EQ(Difference(refining, given), "");
 }
 
-/// Those that ask for the noise of the data, or for the places of the values, take what was measured:
-/// on a surface that was given so, all values were.
+/// Those that ask for the noise of the data, or for the places of the values, take what was
+/// measured: on a surface that was given so, all values were.
 std::vector<FilterKind> FiltersThatTakeAllValues()
 {
   std::vector<FilterKind> kinds = AllFilters();

@@ -183,14 +183,18 @@ Values CellTransfer::ToCells(const Values& ofVertices) const
   return values;
 }
 
-double CellTransfer::NoiseGain(const std::vector<Index>& measuredAs) const
+double CellTransfer::NoiseGain(const std::vector<Index>& measuredAs, const Flags& leftOut) const
 {
   const Index n = this->Mesh.NumberOfVertices();
-  Values sums =
-    Values::Zero(n, 3); // A_i, the sum of the shares, and of the squares of values' shares
+  // A_i, the sum of the shares, and that of the squares of the shares of different values.
+  Values sums = Values::Zero(n, 3);
   ForEach(this->Parallel, n,
     [&](Index i)
     {
+      if (leftOut.size() > 0 && leftOut[i])
+      {
+        return;
+      }
       this->ForEachCornerAround(i,
         [&](const Corner& corner)
         {
@@ -214,7 +218,8 @@ double CellTransfer::NoiseGain(const std::vector<Index>& measuredAs) const
   const double area =
     reduction.SumOverVertices(this->Parallel, n, [&](Index i) { return sums(i, 0); });
   const double variance = reduction.SumOverVertices(this->Parallel, n,
-    [&](Index i) { return sums(i, 0) * sums(i, 2) / (sums(i, 1) * sums(i, 1)); });
+    [&](Index i)
+    { return sums(i, 1) > 0.0 ? sums(i, 0) * sums(i, 2) / (sums(i, 1) * sums(i, 1)) : 0.0; });
   return area > 0.0 ? std::sqrt(variance / area) : 1.0;
 }
 

@@ -80,8 +80,9 @@ public:
 
   /// The standard deviation of P f over that of f for white noise f, as root mean square over the
   /// surface. measuredAs: per cell, a number that cells with the same value share, as those do that
-  /// were one when it was measured; empty if there are none. Collective.
-  double NoiseGain(const std::vector<Index>& measuredAs = {}) const;
+  /// were one when it was measured. leftOut: per vertex, those that do not count. Both may be
+  /// empty. Collective.
+  double NoiseGain(const std::vector<Index>& measuredAs = {}, const Flags& leftOut = Flags()) const;
 
 private:
   /// A corner of a cell.

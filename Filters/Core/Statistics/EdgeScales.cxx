@@ -88,7 +88,15 @@ public:
 
   double MeanEdgeLength() const
   {
-    const SparsePattern& pattern = this->Data.Neighbours;
+    const double ofMeasured = this->MeanLength(this->Data.Neighbours);
+    const double length =
+      ofMeasured > 0.0 ? ofMeasured : this->MeanLength(this->Data.Operators.Pattern());
+    return length > 0.0 ? length : 1.0;
+  }
+
+  /// Of the edges between neighbours; 0 if there are none.
+  double MeanLength(const SparsePattern& pattern) const
+  {
     double sum = 0.0, count = 0.0;
     for (Index i = this->Data.Range.Begin; i < this->Data.Range.End; ++i)
     {
@@ -102,7 +110,7 @@ public:
         }
       }
     }
-    return sum > 0.0 ? sum / count : 1.0;
+    return count > 0.0 ? sum / count : 0.0;
   }
 
   /// Without outliers, but for data that are constant without them, in the Euclidean norm over the

@@ -208,7 +208,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         problems = self._check_own()
         given = [block for block in parts.blocks if _has_polygons(block)]
         if given and not problems:
-            self._refine(given, refinement)
+            others = [block for block in parts.blocks if not _has_polygons(block)]
+            self._refine(given, refinement, others)
         stitched = self._stitch(parts.blocks) if parts.in_pieces else []
         blocks = [surface.block for surface in stitched] if stitched else parts.blocks
         blocks = self._select(blocks, parts, problems)
@@ -304,13 +305,14 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         mean edge length, if RefineTo is -1."""
         return max(0.0, self.own["RefineTo"]), ""
 
-    def _refine(self, blocks: list[Block], refinement: Refinement) -> None:
+    def _refine(self, blocks: list[Block], refinement: Refinement, others: list[Block]) -> None:
         automatic = self.own["RefineTo"] == -1.0
         length, reason = self.find_refinement(mean_edge_length(blocks, self.shapes) if automatic else 0.0)
         limit = self.own["MaximumNumberOfTriangles"]
         if not length > 0.0:
             return
-        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0))
+        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others,
+                          self.choices[1].name if 1 in self.choices else None)
         if refinement.longest > 0.0:
             self._of_refinement.append(
                 f"refinement stopped at edges of {refinement.longest:g}, longer than {length:g}, because "

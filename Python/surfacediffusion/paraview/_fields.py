@@ -14,8 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellTypes, vtkDataObject, vtkDataSe
 
 from .. import _core
 from .._surface import data_components
-from ._refinement import BETWEEN, GIVEN_CELL
-from ._surfaces import Block, SurfaceError, to_numpy
+from ._surfaces import BETWEEN, GIVEN_CELL, Block, SurfaceError, to_numpy
 
 POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
 ANY = 0  #: number of components
@@ -212,8 +211,8 @@ def make_core(fields: Fields, block: Block) -> None:
     if times is not None:
         fields.core.set_start_times(times)
     between = block.input.GetPointData().GetArray(BETWEEN)
-    if between is not None:
-        given = block.input.GetCellData().GetArray(GIVEN_CELL)
+    given = block.input.GetCellData().GetArray(GIVEN_CELL)
+    if between is not None and given is not None:
         fields.core.set_measured(to_numpy(between), to_numpy(given).astype(np.int64))
     if fields.global_ids is not None:
         ids, count = fields.global_ids, block.input.GetNumberOfPoints()

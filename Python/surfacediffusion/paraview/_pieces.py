@@ -20,9 +20,8 @@ from vtkmodules.vtkCommonDataModel import vtkBoundingBox, vtkCellArray, vtkDataS
 
 from .. import _core
 from ._normals import drop_normals
-from ._refinement import BETWEEN, GIVEN_CELL
 from ._results import copy_component_names, make_array
-from ._surfaces import ABSENT, Block, cell_flags, polygons_of, to_numpy
+from ._surfaces import ABSENT, BETWEEN, GIVEN_CELL, Block, cell_flags, polygons_of, to_numpy
 
 _DUPLICATE_POINT = 1  #: the bit in vtkGhostType
 _GHOSTS = vtkDataSetAttributes.GhostArrayName()

@@ -16,7 +16,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vt
 from .. import _core
 from .._refinement import edge_lengths, interpolate_points
 from ._results import copy_component_names, make_array
-from ._surfaces import Block, Shapes, to_numpy
+from ._surfaces import BETWEEN, GIVEN_CELL, Block, Shapes, to_numpy
 
 
 def mean_edge_length(blocks: list[Block], shapes: Shapes) -> float:
@@ -34,11 +34,6 @@ def mean_edge_length(blocks: list[Block], shapes: Shapes) -> float:
     return sum(lengths) / sum(counts) if sum(counts) else 0.0
 
 
-#: Arrays of the inputs during an update, not of their outputs: per point, 1 in the middle of an edge that was
-#: bisected; per cell, the cell of the input that it was cut from, by a number of its own among all blocks.
-BETWEEN, GIVEN_CELL = "surface diffusion between", "surface diffusion given cell"
-
-
 class Refinement:
     """The refined surfaces of an update, which replace its blocks."""
 
@@ -49,19 +44,22 @@ class Refinement:
         self._before: list[tuple[Block, Any]] = []
 
     def bisect(
-        self, blocks: list[Block], length: float, limit: int, progress: Callable[[float], Any]
+        self, blocks: list[Block], length: float, limit: int, progress: Callable[[float], Any],
+        others: list[Block], mask: str | None,
     ) -> None:
-        """Bisect the edges that are longer, until a block would have more triangles than the limit."""
+        """Bisect the edges that are longer, until a block would have more triangles than the limit. others:
+        blocks without polygons, which are pieces of surfaces, too. mask: the name of the mask of points."""
         found = self._bisect_all(blocks, length, limit, progress)
         self.longest = max([refined["longest_edge"] for refined in found if refined["limit_reached"]],
                            default=0.0)
         if self.longest > 0.0 and len(blocks) > 1:
             found = self._bisect_all(blocks, self.longest, limit, progress)  # alike in every block
         cells = 0
-        for block, refined in zip(blocks, found):
+        for block, refined in [*zip(blocks, found), *((block, None) for block in others)]:
             before = block.input
-            if len(refined["parents"]):
-                block.input = _make_surface(before, refined)
+            self._before.append((block, before))
+            if refined is not None and len(refined["parents"]):
+                block.input = _make_surface(before, refined, mask)
                 self.triangles += len(refined["triangles"])
                 block.output.ShallowCopy(block.input)
                 given = to_numpy(block.input.GetCellData().GetArray("vtkOriginalCellIds"))
@@ -71,7 +69,6 @@ class Refinement:
                 block.input = vtkPolyData()
                 block.input.ShallowCopy(before)
                 given = np.arange(before.GetNumberOfCells())
-            self._before.append((block, before))
             between = np.arange(block.input.GetNumberOfPoints()) >= before.GetNumberOfPoints()
             block.input.GetPointData().AddArray(make_array(BETWEEN, between.astype(np.uint8)))
             block.input.GetCellData().AddArray(make_array(GIVEN_CELL, (cells + given).astype(np.int64)))
@@ -95,7 +92,7 @@ class Refinement:
             block.output.ShallowCopy(before)
 
 
-def _make_surface(given: Any, refined: dict[str, Any]) -> Any:
+def _make_surface(given: Any, refined: dict[str, Any], mask: str | None) -> Any:
     surface = vtkPolyData()
     single = given.GetPoints().GetDataType() == VTK_FLOAT
     points = vtkPoints()
@@ -110,28 +107,30 @@ def _make_surface(given: Any, refined: dict[str, Any]) -> Any:
     surface.GetFieldData().ShallowCopy(given.GetFieldData())
     parents = refined["parents"]
     _copy_arrays(given.GetPointData(), surface.GetPointData(), given.GetNumberOfPoints(),
-                 lambda values: interpolate_points(values, parents), parents.min(axis=1))
+                 lambda values, name: interpolate_points(values, parents, mask=bool(mask) and name == mask),
+                 parents.min(axis=1))
     others = given.GetNumberOfVerts() + given.GetNumberOfLines()
     ids = np.concatenate([np.arange(others), refined["faces"].ravel()]).astype(np.int64)
     _copy_arrays(given.GetCellData(), surface.GetCellData(), given.GetNumberOfCells(),
-                 lambda values: values[ids], ids)
+                 lambda values, _: values[ids], ids)
     surface.GetCellData().AddArray(make_array("vtkOriginalCellIds", ids, vtkIdTypeArray))
     return surface
 
 
 def _copy_arrays(
-    given: Any, made: Any, count: int, make: Callable[[NDArray[Any]], NDArray[Any]], rows: NDArray[Any]
+    given: Any, made: Any, count: int, make: Callable[[NDArray[Any], str], NDArray[Any]],
+    rows: NDArray[Any]
 ) -> None:
     """Add the arrays of `given` with a tuple for each of `count` points or cells, but global ids, and keep
-    their roles. make: the values from those of an array. rows: of arrays that are no numbers, the tuples to
-    copy; those of points come after all that there are."""
+    their roles. make: the values from those of an array of a name. rows: of arrays that are no numbers, the
+    tuples to copy; those of points come after all that there are."""
     for number in range(given.GetNumberOfArrays()):
         array, role = given.GetAbstractArray(number), given.IsArrayAnAttribute(number)
         if role == vtkDataSetAttributes.GLOBALIDS or array.GetNumberOfTuples() != count:
             continue
         new = array.NewInstance()
         if isinstance(array, vtkDataArray):
-            new.DeepCopy(numpy_to_vtk(make(to_numpy(array))))
+            new.DeepCopy(numpy_to_vtk(make(to_numpy(array), array.GetName())))
         else:
             _copy_tuples(array, new, rows, keeps=given.IsA("vtkPointData"))
         new.SetName(array.GetName())

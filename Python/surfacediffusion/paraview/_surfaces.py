@@ -28,6 +28,11 @@ class SurfaceError(Exception):
     """An error that the filter reports."""
 
 
+#: Arrays of the inputs during an update, not of their outputs: per point, 1 in the middle of an edge that was
+#: bisected; per cell, the cell of the input that it was cut from, by a number of its own among all blocks.
+BETWEEN, GIVEN_CELL = "surface diffusion between", "surface diffusion given cell"
+
+
 @dataclass
 class Shape:
     """The triangles of a surface, which depend on its points and cells alone."""
