@@ -242,6 +242,8 @@ CASES = [
     ("info random", "random: a file of unknown kind"),
     ("info lh.surf.gii none", "none: cannot be read"),
     # outputs
+    ("smooth lh.surf.gii lh.func.gii 5 out.csv", "out.csv: named .csv, but it is written as GIFTI, the "
+     "format of the input"),
     ("smooth lh.surf.gii lh.func.gii 5 out.mgh", "out.mgh: named as FreeSurfer mgh, but it is "
                                                  "written as GIFTI"),
     ("smooth lh.surf.gii lh.func.gii 5 no/out.func.gii", "no/out.func.gii: cannot be written: "

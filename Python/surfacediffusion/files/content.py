@@ -234,6 +234,9 @@ def check_output_name(path, kind, rows=""):
                             "format of the input")
         if announced == "nifti":
             return
+    text = re.search(r"\.(csv|tsv|txt|json|xlsx?)$", os.fspath(path).lower())
+    if text and announced is None:
+        raise FileError(f"{path}: named .{text[1]}, but it is written as {NAMES[kind]}, the format of the input")
     if announced not in (None, kind):
         raise FileError(f"{path}: named as {NAMES[announced]}, but it is written as {NAMES[kind]}, "
                         "the format of the input")
