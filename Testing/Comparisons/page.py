@@ -24,7 +24,7 @@ and sulcal depth.
 
 | name | call |
 | --- | --- |
-| SurfaceDiffusion | `surfacediffusion smooth SURFACE DATA FWHM OUTPUT`, or `heat()` with 3 steps |
+| SurfaceDiffusion | `surfacediffusion smooth SURFACE DATA FWHM OUTPUT`, or `heat()` with one exponential step |
 | Workbench | `wb_command -metric-smoothing SURFACE DATA FWHM OUTPUT -fwhm` (GEO_GAUSS_AREA) |
 | CAT | `cat_surf.smooth_heatkernel()` |
 | nilearn | `nilearn.image.smooth_img()` of a `SurfaceImage` |
@@ -45,7 +45,7 @@ in all directions and places.
 
 The relative error in L2 of smoothed maps, against 200 Crank-Nicolson steps of the same finite
 elements, for which a program of its own is used. These steps solve the diffusion equation on the
-triangulated surface, which this library solves too, with 3 steps; the other programs approximate it
+triangulated surface, which this library solves too, in one step; the other programs approximate it
 by other means. The second number is the change of the integral of the map, relative to the
 integral of its magnitude; 0 stands for less than 0.0001 %.
 

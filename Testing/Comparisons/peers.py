@@ -61,7 +61,8 @@ def ours(points, faces, values, fwhm, mask=None):
     from surfacediffusion import Surface, heat
 
     options = {} if mask is None else {"mask": mask, "mask_mode": "Exclude"}
-    return heat(Surface(points, faces), values, fwhm=fwhm, number_of_time_steps=3, **options)
+    return heat(Surface(points, faces), values, fwhm=fwhm, time_integrator="Exponential",
+                number_of_time_steps=1, **options)
 
 
 def nilearn(points, faces, values, fwhm):
