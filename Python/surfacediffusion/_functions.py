@@ -303,7 +303,7 @@ def heat(
     way. For a single result of a given `fwhm`, ``time_integrator="Exponential"`` with
     ``number_of_time_steps=1`` is the fastest and nearly the most accurate, as ``surfacediffusion smooth``
     takes: it solves 6 systems in place of 20, and is within 0.5 % (L2) of the exact result for white
-    noise at any width (3 % for data at faces). Values may leave the range of the data by 2e-4 of it.
+    noise at any width (1 % for data at faces). Values may leave the range of the data by 5e-4 of it.
 
     More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
     in double precision does not grow with their number. This does not hold with `automatic_fidelity`,

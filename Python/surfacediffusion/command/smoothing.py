@@ -126,8 +126,8 @@ def _areas_and_steps(parser):
                         help="the areas of the vertices in the first column, in place of those of "
                              "SURFACE: for a surface that is the average of many")
     common.steps(parser, "number of time steps (default 1, which is within 0.5 %% of the exact "
-                         "result for white noise at any width, 3 %% for data at faces; values may "
-                         "leave their range by 2e-4 of it)", 1)
+                         "result for white noise at any width, 1 %% for data at faces; values may "
+                         "leave their range by 5e-4 of it)", 1)
 
 
 def _kernels_are_fwhm(parser, text):
