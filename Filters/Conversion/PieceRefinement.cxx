@@ -62,13 +62,16 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(
     {
       const double first = numbers->GetComponent(a, k);
       const double second = numbers->GetComponent(b, k);
-      const double mean = 0.5 * first + 0.5 * second;
-      const double mark = isMask && first == 0.0 ? second : first;
-      numbers->SetComponent(count + i, k,
-        isMask              ? mark
-          : !rounds         ? mean
-          : components == 1 ? std::min(first, second)
-                            : std::floor(mean + 0.5));
+      double between = 0.5 * first + 0.5 * second;
+      if (isMask)
+      {
+        between = first == 0.0 ? second : first;
+      }
+      else if (rounds)
+      {
+        between = components == 1 ? std::min(first, second) : std::floor(between + 0.5);
+      }
+      numbers->SetComponent(count + i, k, between);
     }
   }
   return to;

@@ -3,6 +3,7 @@
 #include "Run/CellFields.h"
 
 #include "Core/Models/Harmonic/UnitVectors.h"
+#include "Core/Models/ModelWithCellDetail.h"
 #include "Run/LineTensors.h"
 
 #include <algorithm>

@@ -39,8 +39,8 @@ double NoiseGain(const ModelInputs& inputs);
 /// The standard deviation at vertices, in ValueUnit, of white noise of the data, in array units.
 double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel);
 
-/// The mean fidelity factor of the known vertices, by area; 1 without factors. An automatic weight is
-/// divided by it, so that factors such as 1/s^2 may have any unit.
+/// The mean fidelity factor of the known vertices, by area; 1 without factors. An automatic weight
+/// is divided by it, so that factors such as 1/s^2 may have any unit.
 double MeanFidelityFactor(const TriangleMesh& mesh, const PointData& data);
 
 /// The fidelity weight, in units of the numerics, at which the state after `steps` steps differs

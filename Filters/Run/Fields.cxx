@@ -40,6 +40,22 @@ std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields
   return seeds;
 }
 
+/// Per vertex, whether all of its points are in between; no entries if no point can be.
+Flags FindVerticesBetween(const Surface& surface, const Fields& fields)
+{
+  const bool anyBetween = !fields.Between.empty();
+  Flags isBetween = Flags::Constant(anyBetween ? surface.Mesh().NumberOfVertices() : 0, true);
+  for (std::size_t i = 0; i < fields.Between.size(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    if (v >= 0 && !fields.Between[i])
+    {
+      isBetween[v] = false;
+    }
+  }
+  return isBetween;
+}
+
 } // namespace
 
 InputError ErrorAt(
@@ -213,15 +229,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
   data.Fixed = Flags::Constant(n, false);
   Values damaged; // the values of vertices without any known point, if there are such
   std::vector<Index> known(static_cast<std::size_t>(n), 0);
-  std::vector<char> isGiven(fields.Between.empty() ? 0 : static_cast<std::size_t>(n), 0);
-  for (std::size_t i = 0; i < fields.Between.size(); ++i)
-  {
-    const Index v = surface.VertexOf(static_cast<Index>(i));
-    if (v >= 0 && !fields.Between[i])
-    {
-      isGiven[static_cast<std::size_t>(v)] = 1;
-    }
-  }
+  const Flags isBetween = FindVerticesBetween(surface, fields);
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
     if (values.row(i).array().isInf().any())
@@ -229,7 +237,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
       throw ErrorAt(fields.DataName, "is infinite", false, i, "allowed: finite values and NaN");
     }
     const Index v = surface.VertexOf(static_cast<Index>(i));
-    if (v < 0 || (IsSet(fields.Between, i) && IsSet(isGiven, v)))
+    if (v < 0 || (IsSet(fields.Between, i) && !isBetween[v]))
     {
       continue; // a point on an edge that another triangle's corner is merged with
     }
@@ -282,23 +290,9 @@ std::shared_ptr<const MeasuredVertices> FindMeasured(const Surface& surface, con
   {
     return nullptr;
   }
-  const std::vector<Index>& rows = surface.Mesh().InputVertex();
-  Points places(static_cast<Eigen::Index>(rows.size()), 3);
-  for (std::size_t v = 0; v < rows.size(); ++v)
-  {
-    places.row(static_cast<Eigen::Index>(v)) = surface.Points().row(rows[v]);
-  }
-  Flags isBetween = Flags::Constant(places.rows(), true);
-  for (std::size_t i = 0; i < fields.Between.size(); ++i)
-  {
-    const Index v = surface.VertexOf(static_cast<Index>(i));
-    if (v >= 0 && !fields.Between[i])
-    {
-      isBetween[v] = false;
-    }
-  }
   return std::make_shared<const MeasuredVertices>(
-    FindMeasuredVertices(surface.SharedAssembler()->Pattern(), places, std::move(isBetween)));
+    FindMeasuredVertices(surface.SharedAssembler()->Pattern(), VertexPositions(surface),
+      FindVerticesBetween(surface, fields)));
 }
 
 TangentVectors MakeInputDirections(

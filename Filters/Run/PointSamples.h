@@ -35,11 +35,11 @@ struct ProjectedSample
   bool IsExcluded = false; ///< in a triangle that takes no part
 };
 
-/// Projects fields.Samples to all triangles of a surface, those that the mask excludes included. Then
-/// fields.Data stands for the values wherever a run asks where data are known, and of which size they
-/// are: at the points of the triangles that the samples are in, NaN elsewhere. Those excluded, and
-/// those farther than maximumDistance (0: none), do not count. Throws InputError on values and
-/// weights that are not allowed, and if no value is left.
+/// Projects fields.Samples to all triangles of a surface, those that the mask excludes included.
+/// Then fields.Data stands for the values wherever a run asks where data are known, and of which
+/// size they are: at the points of the triangles that the samples are in, NaN elsewhere. Those
+/// excluded, and those farther than maximumDistance (0: none), do not count. Throws InputError on
+/// values and weights that are not allowed, and if no value is left.
 void ProjectSamples(const SurfaceArrays& arrays, double maximumDistance, Fields& fields);
 
 /// The values that a smooth function takes on a surface.

@@ -31,9 +31,6 @@ Sentence DescribeMissedTolerance(const Shortfalls& found, double tolerance)
   return text;
 }
 
-/// R counts as that of outliers if it is so many times the range without them.
-constexpr double OutlierFactor = 3.0;
-
 Sentence DescribeOutliers(double range, double robust, const std::vector<const char*>& settings)
 {
   Sentence names;
@@ -231,10 +228,7 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
   addCount(sum.DegenerateTriangles, " triangles of zero area were left out");
   addCount(
     sum.NonManifoldEdges, " edges have three or more triangles, which all exchange over them");
-  addCount(sum.CoincidentBoundaryPoints,
-    Sentence(" boundary points coincide with others and nothing flows between them (to join them, "
-             "set ")
-      << Word::Setting("MergeCoincidentPoints") << ")");
+  addCount(sum.CoincidentBoundaryPoints, SentenceOfCoincidence(" and nothing flows between them"));
   addCount(sum.EdgesLeft,
     " edges of the intrinsic Delaunay triangulation could not be flipped within the limit of 50 "
     "checks per side, or at triangles that are nearly flat: values can leave the bounds of the "

@@ -161,11 +161,8 @@ double FidelityOfContrast(const ModelInputs& inputs, const Segmentation::Input& 
   return contrast > 0.0 ? AutomaticWeight / scale : 0.0;
 }
 
-/// Means would be those of outliers, and of the rest. Values count as outliers beyond the robust
-/// bounds of a component whose whole range is so many times as wide.
-constexpr double OutlierFactor = 3.0;
-
-/// Outliers become the bound that they are beyond.
+/// Outliers become the bound that they are beyond: means would be those of outliers, and of the
+/// rest.
 void LimitOutliers(double unit, PointData& data, RunResult& result)
 {
   std::vector<double> known;

@@ -304,6 +304,23 @@ Index Surface::CountCoincidentBoundaryPoints() const
   return count;
 }
 
+Sentence SentenceOfCoincidence(const char* consequence)
+{
+  return Sentence(" boundary points coincide with others")
+    << consequence << " (to join them, set " << Word::Setting("MergeCoincidentPoints") << ")";
+}
+
+Points VertexPositions(const Surface& surface)
+{
+  const TriangleMesh& mesh = surface.InputMesh();
+  Points positions(mesh.NumberOfVertices(), 3);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    positions.row(i) = surface.Points().row(mesh.InputVertex()[i]) / mesh.LengthUnit();
+  }
+  return positions;
+}
+
 TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vectors)
 {
   return surface.Delaunay() ? surface.Delaunay()->Transport(vectors) : vectors;

@@ -5,6 +5,7 @@
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
+#include "Run/Sentence.h"
 
 #include <array>
 #include <memory>
@@ -48,6 +49,9 @@ struct SurfaceDiagnostics
   Index CoincidentBoundaryPoints = 0; ///< counted if merging is off
   Index EdgesLeft = 0; ///< IntrinsicDelaunay::NumberOfEdgesLeft()
 };
+
+/// What follows the number of CoincidentBoundaryPoints, with their consequence.
+Sentence SentenceOfCoincidence(const char* consequence);
 
 /// The surface that the numerics work on, and the way back to its points.
 class Surface
@@ -121,6 +125,9 @@ private:
   std::vector<Index> Vertices;
   SurfaceDiagnostics Found;
 };
+
+/// Positions of the vertices, in LengthUnit().
+Points VertexPositions(const Surface& surface);
 
 /// e1 per triangle of Mesh(), from tangent vectors of InputMesh().
 TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vectors);

@@ -98,8 +98,7 @@ std::vector<Warning> SurfaceRun::FindAllWarnings(
   if (coincident > 0 && ofCoincident)
   {
     Sentence text;
-    text << coincident << " boundary points coincide with others" << ofCoincident
-         << " (to join them, set " << Word::Setting("MergeCoincidentPoints") << ")";
+    text << coincident << SentenceOfCoincidence(ofCoincident);
     warnings.push_back({ text, surfaces });
   }
   return warnings;
@@ -115,17 +114,6 @@ BlockInput SurfaceRun::WithoutGivenAreas(const BlockInput& input)
     return arrays;
   };
   return drawn;
-}
-
-Points SurfaceRun::VertexPositions(const Surface& surface)
-{
-  const TriangleMesh& mesh = surface.InputMesh();
-  Points positions(mesh.NumberOfVertices(), 3);
-  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-  {
-    positions.row(i) = surface.Points().row(mesh.InputVertex()[i]) / mesh.LengthUnit();
-  }
-  return positions;
 }
 
 void SurfaceRun::AppendTurnedTriangles(Index count, std::vector<Warning>& warnings) const

@@ -67,8 +67,6 @@ protected:
 
   /// The same input, whose control cells have the areas of the drawn surface.
   static BlockInput WithoutGivenAreas(const BlockInput& input);
-  /// Positions of the vertices, in LengthUnit().
-  static Points VertexPositions(const Surface& surface);
   ///@{
   /// Append a warning unless the number is 0.
   void AppendTurnedTriangles(Index count, std::vector<Warning>& warnings) const;

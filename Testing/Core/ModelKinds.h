@@ -139,6 +139,10 @@ inline std::vector<ModelKind> AllModelKinds()
         s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential;
         s.FidelityWeight = 0.5;
       }),
+    MakeKind<Heat>(
+      "HeatExponentialOnCells", 2,
+      [](Heat& s) { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential; },
+      Content::ColorsOnCells),
     MakeKind<Heat>("HeatDirected", 2,
       [](Heat& s)
       {

@@ -151,6 +151,12 @@ inline std::vector<FilterKind> AllFilters()
         SetInputArray(f, 1, "mask");
       }),
     MakeKind<Heat>("HeatOfCells", "cDiffused", 3, [](Heat* f) { SetInputArray(f, 0, "c", true); }),
+    MakeKind<Heat>("HeatExponentialOfCells", "cDiffused", 2,
+      [](Heat* f)
+      {
+        f->SetTimeIntegratorToExponential();
+        SetInputArray(f, 0, "c", true);
+      }),
     MakeKind<TV>("TV", "fTV", 3),
     MakeKind<TV>("TVImplicit", "fTV", 2, [](TV* f) { f->SetTimeIntegratorToImplicit(); }),
     MakeKind<TV>("TVSteady", "fTV", 1, [](TV* f) { f->SetModeToSteadyState(); }),

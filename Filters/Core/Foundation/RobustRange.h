@@ -21,6 +21,9 @@ struct ValueBounds
   double Width() const { return this->High > this->Low ? this->High - this->Low : 0.0; }
 };
 
+/// A range counts as that of outliers if it is so many times as wide as the robust one.
+constexpr double OutlierFactor = 3.0;
+
 /// The extremes of finite values without the outliers: the smallest 0.1 % and the largest 0.1 % are
 /// left out, from 100 values on at least one of each. Takes linear time, and reorders the values.
 ValueBounds RobustBounds(std::vector<double>& values);

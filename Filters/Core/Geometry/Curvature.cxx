@@ -37,8 +37,8 @@ struct Disk
   std::vector<Index> All; ///< at most two edges from it
 };
 
-/// The search does not pass vertices of many triangles, such as the middle of a disc that is cut into
-/// slices.
+/// The search does not pass vertices of many triangles, such as the middle of a disc that is cut
+/// into slices.
 void FindDisk(const TriangleMesh& mesh, Index centre, Disk& found)
 {
   std::vector<Index>& disk = found.All;
@@ -145,8 +145,8 @@ LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i
   return found;
 }
 
-/// Where the vertices that a function reaches do not determine a polynomial, as at edges and corners
-/// that are sharp, all neighbours count.
+/// Where the vertices that a function reaches do not determine a polynomial, as at edges and
+/// corners that are sharp, all neighbours count.
 LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i, const Disk& disk)
 {
   bool isDetermined = false;

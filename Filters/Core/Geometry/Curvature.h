@@ -30,14 +30,14 @@ struct Curvatures
 /// fwhm = 0: from the quadratic polynomial that fits the vertices of at most two edges from each
 /// vertex, its own position held, as a function over the plane orthogonal to its normal. Vertices
 /// that such a function cannot reach, with normals at 60 degrees or more, do not count, unless the
-/// others do not determine the polynomial, as at sharp edges and corners: then all neighbours count.
-/// Of several polynomials that fit equally well the one with the smallest coefficients is taken. The
-/// error is of second order in the length of the edges on meshes that look alike in opposite
-/// directions, and of first order on others and at boundaries.
+/// others do not determine the polynomial, as at sharp edges and corners: then all neighbours
+/// count. Of several polynomials that fit equally well the one with the smallest coefficients is
+/// taken. The error is of second order in the length of the edges on meshes that look alike in
+/// opposite directions, and of first order on others and at boundaries.
 ///
 /// fwhm > 0, in LengthUnit(): S is the slope of the normals of these polynomials over the positions
-/// by FitByHeat(), weighted with the Gaussian of this full width at half maximum on the surface. It is exact on
-/// spheres, and has an error of order fwhm^2 elsewhere, of order fwhm at boundaries.
+/// by FitByHeat(), weighted with the Gaussian of this full width at half maximum on the surface. It
+/// is exact on spheres, and has an error of order fwhm^2 elsewhere, of order fwhm at boundaries.
 ///
 /// positions: per vertex, in LengthUnit(). operators: of the heat equation, of a mesh with the same
 /// vertices; not used if fwhm is 0. Those of an intrinsic Delaunay triangulation have no negative

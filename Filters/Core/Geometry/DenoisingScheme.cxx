@@ -21,8 +21,8 @@ namespace
 
 /// The noise, in h, for which the fidelities of a scheme are meant.
 constexpr double ReferenceNoise = 0.3;
-/// The share of the work that finds neighbours, and those of the rest up to the third stage, and up to
-/// the final fit.
+/// The share of the work that finds neighbours, and those of the rest up to the third stage, and up
+/// to the final fit.
 constexpr double GraphProgress = 0.05;
 constexpr double VariationProgress = 0.5;
 constexpr double FinalProgress = 0.95;
@@ -35,8 +35,8 @@ constexpr double MeanOfLocalSquares = 0.7785; ///< of noise alone, with that lim
 constexpr double LargestChange = 4.0;
 constexpr double SmallestFactor = 0.5;
 constexpr double LargestFactor = 100.0;
-/// Limits of the whiteness of displacements: all of a step or a result up to the first, nothing from
-/// the second on.
+/// Limits of the whiteness of displacements: all of a step or a result up to the first, nothing
+/// from the second on.
 struct WhitenessLimits
 {
   double All;
@@ -49,8 +49,8 @@ constexpr WhitenessLimits LimitsOfSteps = { 0.55, 0.75 };
 /// surfaces with details 1 to 5.
 constexpr WhitenessLimits LimitsOfResult = { 0.85, 1.1 };
 /// Details of short wavelength leave displacements that are not alike at neighbours but larger than
-/// the noise: nothing from this mean square on, in squares of the noise. Impulsive noise, whose level
-/// is that of fewer vertices, and noise that is underestimated have up to 2.
+/// the noise: nothing from this mean square on, in squares of the noise. Impulsive noise, whose
+/// level is that of fewer vertices, and noise that is underestimated have up to 2.
 constexpr double LargestMeanSquare = 3.0;
 /// The pauses between measurements of the whiteness grow by one iteration after so many, since
 /// steps become smaller.
@@ -196,8 +196,8 @@ private:
     return part;
   }
 
-  /// Per vertex, by the whiteness of the displacements of the present surface, and by the mean square
-  /// of those of `points`, around it.
+  /// Per vertex, by the whiteness of the displacements of the present surface, and by the mean
+  /// square of those of `points`, around it.
   Vector Shares(const WhitenessLimits& limits, const Points& points) const
   {
     const Vector whiteness = this->Statistics.LocalWhiteness(

@@ -40,11 +40,11 @@ struct DenoisingReport
 /// are oriented first (see OrientTriangles()), and the result does not depend on the numbering of
 /// vertices and triangles.
 ///
-/// Each iteration filters the normals of the present surface and moves the points towards the fit of
-/// the given points to them, FitToNormals(), by one step of conjugate gradients: few steps
+/// Each iteration filters the normals of the present surface and moves the points towards the fit
+/// of the given points to them, FitToNormals(), by one step of conjugate gradients: few steps
 /// regularise. The first iterations use FilterNormals(), which suits piecewise constant normals and
-/// sharpens edges. The second ones use FitLinearNormals() with the normals of the present surface as
-/// guide, for piecewise linear normals, and TurnFlippedFaces(). On surfaces of the type CAD,
+/// sharpens edges. The second ones use FitLinearNormals() with the normals of the present surface
+/// as guide, for piecewise linear normals, and TurnFlippedFaces(). On surfaces of the type CAD,
 /// iterations with NormalVariation follow, and a fit to the last normals that is nearly solved.
 /// Tangential displacements are small, so that triangles and boundaries keep their shape. A noise
 /// level of 0 leaves the points as they are.
@@ -60,11 +60,11 @@ struct DenoisingReport
 /// have three times the variance of the noise.
 ///
 /// If the type is Automatic, the variation of normals is minimised, too, and its result is kept if
-/// the displacements are then as white as independent noise. Otherwise it has removed details, which
-/// are of a few triangles on organic surfaces.
+/// the displacements are then as white as independent noise. Otherwise it has removed details,
+/// which are of a few triangles on organic surfaces.
 ///
-/// Noise that is correlated over several edges has a scheme of its own, SchemeForCorrelatedNoise(). A
-/// given level of a surface of the type Organic is that of independent noise.
+/// Noise that is correlated over several edges has a scheme of its own, SchemeForCorrelatedNoise().
+/// A given level of a surface of the type Organic is that of independent noise.
 ///
 /// points: per vertex of the mesh; fixed: per vertex, nonzero for vertices that stay, may be empty.
 /// Throws Aborted.

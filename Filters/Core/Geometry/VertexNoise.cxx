@@ -57,8 +57,8 @@ struct VertexRange
   std::size_t size() const { return static_cast<std::size_t>(this->Last - this->First); }
 };
 
-/// A vertex and the vertices up to a number of edges away from it. A vertex with more than LargestFan
-/// triangles has neighbours of its own, but does not make them neighbours of each other.
+/// A vertex and the vertices up to a number of edges away from it. A vertex with more than
+/// LargestFan triangles has neighbours of its own, but does not make them neighbours of each other.
 class Neighbourhood
 {
 public:

@@ -48,10 +48,10 @@ struct CorrelatedNoise
 
 /// Find correlated noise by the growth of sigma_r, the deviation of vertices from a quadric through
 /// r rings of neighbours (see EstimateVertexNoise()). A quadric follows noise of the correlation
-/// length L (covariance exp(-d^2 / (2 L^2))) as long as r is less than about 3 L / h, and from there
-/// on sigma_r stays at the level of the noise. White noise has one sigma_r for all r, and under white
-/// noise the details of a surface make it grow from more rings on. The details of a surface make
-/// sigma_r grow with r all the way, by a factor of 2 and more from r = 8 to r = 16.
+/// length L (covariance exp(-d^2 / (2 L^2))) as long as r is less than about 3 L / h, and from
+/// there on sigma_r stays at the level of the noise. White noise has one sigma_r for all r, and
+/// under white noise the details of a surface make it grow from more rings on. The details of a
+/// surface make sigma_r grow with r all the way, by a factor of 2 and more from r = 8 to r = 16.
 ///
 /// Noise is correlated if sigma_4 > 1.3 sigma_2, sigma_16 < 1.6 sigma_8, and sigma_16 is between
 /// 0.1 h and h, on surfaces of at least 3,200 vertices, of which sixteen rings are a small part.
@@ -61,9 +61,9 @@ struct CorrelatedNoise
 /// resemble noise. The level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of
 /// the level. Noise with L > 3 h does not reach its level within sixteen rings and is not found.
 ///
-/// given: the level, if it is known, otherwise 0. Then noise of these surfaces is correlated, too, if
-/// sigma_2^2 is less than half of its square and sigma_4 > 1.8 sigma_2, up to L = 16/3 h: details have
-/// as large a growth, but are below the level that is to be removed.
+/// given: the level, if it is known, otherwise 0. Then noise of these surfaces is correlated, too,
+/// if sigma_2^2 is less than half of its square and sigma_4 > 1.8 sigma_2, up to L = 16/3 h:
+/// details have as large a growth, but are below the level that is to be removed.
 CorrelatedNoise EstimateCorrelatedNoise(const TriangleMesh& mesh, const Points& points,
   double given = 0.0, const ParallelFor& parallel = SerialFor());
 

@@ -85,6 +85,11 @@ private:
   void FixFreeComponents(Eigen::Index first, Eigen::Index last);
   void ImposeHeld(Eigen::Index first, Eigen::Index last);
   double DiffusionNumber(double inertia) const;
+  /// Of cells, and of the values at edges, which are free.
+  bool IsFixed(Index row) const
+  {
+    return row < this->Cells.NumberOfCells() && this->Fixed[static_cast<std::size_t>(row)] != 0;
+  }
   void SolvePanel(Eigen::Index first, Eigen::Index count, const DiffusionStep& step,
     StepReport& report, const ProgressMonitor& progress);
   void CorrectMeans(const Values& b, Values& x);
@@ -116,40 +121,12 @@ private:
   {
     Values X, B;
   };
+  struct SeriesTerms
+  {
+    Values LastTerm, TermBefore, Sum;
+  };
+  SeriesTerms Series; ///< of an exponential step; kept, since later steps allocate nothing
   std::array<Panel, 2> Panels; ///< of ColumnPanel columns, and of fewer
-};
-
-/// A model of data on cells, with their detail.
-class ModelWithCellDetail : public Model
-{
-public:
-  ModelWithCellDetail(std::unique_ptr<Model> model, std::shared_ptr<CellDetail> detail)
-    : OfVertices(std::move(model))
-    , Detail(std::move(detail))
-  {
-  }
-
-  const Values& State() const override { return this->OfVertices->State(); }
-  bool SumState(std::vector<double>& totals) const override
-  {
-    return this->OfVertices->SumState(totals);
-  }
-  /// Reports the step of the model, and solves of the detail that missed their tolerance.
-  StepReport Advance(const ProgressMonitor& progress) override;
-  bool Finished() const override { return this->OfVertices->Finished(); }
-  double Energy() const override { return this->OfVertices->Energy(); }
-  const Model& Innermost() const override { return this->OfVertices->Innermost(); }
-
-  std::size_t CheckpointSize() const override
-  {
-    return this->OfVertices->CheckpointSize() + this->Detail->CheckpointSize();
-  }
-  void Save(double* checkpoint) const override;
-  void Restore(const double* checkpoint) override;
-
-private:
-  std::unique_ptr<Model> OfVertices;
-  std::shared_ptr<CellDetail> Detail;
 };
 
 } // namespace SurfaceDiffusion

@@ -3,6 +3,9 @@
 #include "Core/Models/DiffusionPanel.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Models/ExponentialSeries.h"
+
+#include <cstddef>
 
 namespace SurfaceDiffusion
 {
@@ -32,21 +35,19 @@ void DiffusionPanel::StartSecondStage(const Values& u, double ratio, double dt)
     [&](auto number) { this->FillSecond<decltype(number)::value>(u, ratio, dt); });
 }
 
-void DiffusionPanel::StartSeries(double coefficient)
+void DiffusionPanel::StartSeries()
 {
-  this->Term = this->Solution;
+  this->LastTerm = this->Solution;
   this->TermBefore = this->Solution;
-  this->Sum = coefficient * this->Solution;
-  this->IsFirstTerm = true;
+  this->Sum = ExponentialSeries::Coefficients[0] * this->Solution;
 }
 
-void DiffusionPanel::AddTerm(double coefficient, double dt, bool isLast)
+void DiffusionPanel::AddTerm(int k, double dt)
 {
-  ForColumns(this->Solution.cols(),
-    [&](auto number) { this->FillTerm<decltype(number)::value>(coefficient, dt, isLast); });
-  this->Term.swap(this->TermBefore);
-  this->IsFirstTerm = false;
-  if (isLast)
+  ForColumns(
+    this->Solution.cols(), [&](auto number) { this->FillTerm<decltype(number)::value>(k, dt); });
+  this->LastTerm.swap(this->TermBefore);
+  if (k == ExponentialSeries::Degree)
   {
     this->Solution.swap(this->Sum);
     this->Shifts.setZero();
@@ -143,27 +144,28 @@ void DiffusionPanel::FillSecond(const Values& u, double ratio, double dt)
     });
 }
 
+/// Writes T_k over T_(k-2).
 template <int K>
-void DiffusionPanel::FillTerm(double coefficient, double dt, bool isLast)
+void DiffusionPanel::FillTerm(int term, double dt)
 {
   const ColumnCount<K> columns(this->Solution.cols());
   const Eigen::Index first = this->FirstColumn;
   const double* const origin = this->FirstOrigin();
-  const double factor = this->IsFirstTerm ? 2.0 : 4.0; // T_1 = 2 Y T_0 - T_0
+  const double coefficient = ExponentialSeries::Coefficients[static_cast<std::size_t>(term)];
   this->ForEachShifted(
     [&](Index i, const double* shifts)
     {
       double* const v = &this->Solution(i, 0);
-      const double* const term = &this->Term(i, 0);
+      const double* const last = &this->LastTerm(i, 0);
       double* const before = &this->TermBefore(i, 0);
       double* const sum = &this->Sum(i, 0);
       for (int k = 0; k < columns; ++k)
       {
-        v[k] = factor * (v[k] + shifts[k]) - (factor - 2.0) * term[k] - before[k];
+        v[k] = ExponentialSeries::NextTerm(term, v[k] + shifts[k], last[k], before[k]);
         before[k] = v[k];
         sum[k] += coefficient * v[k];
       }
-      if (isLast)
+      if (term == ExponentialSeries::Degree)
       {
         return;
       }

@@ -31,12 +31,11 @@ public:
   /// After the first stage: RightHandSide = M (u + ratio (Solution - u) + dt lambda chi f).
   void StartSecondStage(const Values& u, double ratio, double dt);
 
-  /// After StartStage(): the sum of a series of terms T_k, see LinearDiffusion::StepExponential(),
-  /// of which T_0 is Solution.
-  void StartSeries(double coefficient);
-  /// Solution is Y T_(k-1): add coefficient T_k to the sum and make T_k Solution, and
-  /// RightHandSide = M (T_k + dt lambda chi f). isLast: make the sum Solution.
-  void AddTerm(double coefficient, double dt, bool isLast);
+  /// After StartStage(): the sum of an ExponentialSeries, of which the term T_0 is Solution.
+  void StartSeries();
+  /// Solution is Y T_(k-1): add T_k to the sum and make it Solution, and
+  /// RightHandSide = M (T_k + dt lambda chi f). After the last term the sum is Solution.
+  void AddTerm(int k, double dt);
 
   /// Give Solution the mean that the sum of the equations determines, once it has been computed.
   void Correct(MeanCorrection& correction);
@@ -55,7 +54,7 @@ private:
   template <int K>
   void FillSecond(const Values& u, double ratio, double dt);
   template <int K>
-  void FillTerm(double coefficient, double dt, bool isLast);
+  void FillTerm(int term, double dt);
   template <int K>
   void AddShifts();
   template <int K>
@@ -71,8 +70,7 @@ private:
   const ParallelFor& Parallel;
   Eigen::RowVectorXd Origin;
   Eigen::Index FirstColumn = 0;
-  Values Term, TermBefore, Sum; ///< of a series; TermBefore is T_0 before there is a T_1
-  bool IsFirstTerm = true; ///< T_1 comes next
+  Values LastTerm, TermBefore, Sum; ///< of a series
   Values Shifts; ///< of the last correction, component x column: the loop that follows adds them
 };
 

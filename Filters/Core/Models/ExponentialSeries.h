@@ -30,6 +30,15 @@ struct ExponentialSeries
     0.23219251097366198, 0.3995095044281711, 0.2492498506907564, 0.1037724077702688,
     0.02082438761217644, -0.003281912198437957, -0.002266749276596778
   };
+
+  /// T_k(2 Y - 1) u for k = 1 to Degree from y = Y T_(k-1), T_(k-1) and T_(k-2); T_(-1) stands for
+  /// T_0. The factors add up to 1, so that a step of backward Euler with a source and Dirichlet
+  /// conditions can take the place of Y: exp(-dt L) is then applied to the difference from the
+  /// steady state.
+  static double NextTerm(int k, double y, double last, double beforeLast)
+  {
+    return k == 1 ? 2.0 * y - last : 4.0 * y - 2.0 * last - beforeLast;
+  }
 };
 
 } // namespace SurfaceDiffusion

@@ -9,7 +9,6 @@
 #include "Core/Operators/DirichletEnergy.h"
 
 #include <algorithm>
-#include <cstddef>
 
 namespace SurfaceDiffusion
 {
@@ -157,22 +156,18 @@ void LinearDiffusion::StepSDIRK2(
   this->Solve(report, progress.Part(0.5, 1.0));
 }
 
-/// The terms T_k = T_k(2 Y - 1) u of the series follow from T_0 = u, T_1 = 2 Y T_0 - T_0 and
-/// T_(k+1) = 4 Y T_k - 2 T_k - T_(k-1). The factors of each sum add up to 1, so that a step of
-/// backward Euler with a source and Dirichlet conditions can take the place of Y: exp(-dt L) is
-/// then applied to the difference from the steady state.
+/// See ExponentialSeries.
 void LinearDiffusion::StepExponential(
   Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress)
 {
   constexpr int last = ExponentialSeries::Degree;
   const double dt = this->Options.ImplicitStep();
   this->Panel.StartStage(this->U, first, count, 1.0, dt);
-  this->Panel.StartSeries(ExponentialSeries::Coefficients[0]);
+  this->Panel.StartSeries();
   for (int k = 1; k <= last; ++k)
   {
     this->Solve(report, progress.Part((k - 1.0) / last, static_cast<double>(k) / last));
-    this->Panel.AddTerm(
-      ExponentialSeries::Coefficients[static_cast<std::size_t>(k)], dt, k == last);
+    this->Panel.AddTerm(k, dt);
   }
 }
 

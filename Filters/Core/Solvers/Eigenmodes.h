@@ -24,8 +24,8 @@ struct Eigenmodes
 /// solves, which are cheap, and shorter bases, whose orthogonalisation is not. The connected
 /// components have separate modes, which are zero elsewhere: eigenvalues that several parts have in
 /// common are found as often as they occur. Of each component the first mode is constant, and its
-/// eigenvalue exactly 0. An eigenvalue that one component has more than 16 times, as the 0 of a part
-/// with D = 0, is looked for in a new random block until none is found any more.
+/// eigenvalue exactly 0. An eigenvalue that one component has more than 16 times, as the 0 of a
+/// part with D = 0, is looked for in a new random block until none is found any more.
 ///
 /// The entry of each mode with the largest magnitude is positive; of several that agree to 1e-6 the
 /// one of the first point. The start is random with a fixed seed per point: no bit depends on the

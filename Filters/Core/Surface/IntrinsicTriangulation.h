@@ -48,8 +48,8 @@ public:
   /// The vertex at corner a of triangle t.
   Index Vertex(Index t, int a) const { return this->Triangles[t].Vertices[a]; }
 
-  /// Whether the cotangents opposite the edge have a nonnegative sum, up to round-off, or nothing is to
-  /// be flipped there.
+  /// Whether the cotangents opposite the edge have a nonnegative sum, up to round-off, or nothing
+  /// is to be flipped there.
   bool IsDelaunay(Index side) const;
 
   /// A flip, with the rotations that carry tangent vectors over it. Angles are in radians from the

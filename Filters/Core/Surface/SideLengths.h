@@ -9,8 +9,8 @@
 #include <cmath>
 #include <limits>
 
-/// Triangles that are given by the lengths of their sides; side a is opposite corner a. Corner 0 is the
-/// origin, and corner 1 on the first axis.
+/// Triangles that are given by the lengths of their sides; side a is opposite corner a. Corner 0 is
+/// the origin, and corner 1 on the first axis.
 namespace SurfaceDiffusion
 {
 

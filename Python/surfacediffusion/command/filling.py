@@ -17,9 +17,9 @@ from .stages import (
 POINTS = f"""
 {common.SURFACES}
 VALUES: a text file with a row x, y, z, value, ... for each point, separated by commas or spaces and
-with or without a line of names (x, y, z may then be in any columns), whose points count at the nearest points of SURFACE; or data with a
-value for each vertex, in the formats of the other commands. NaN, and an empty value in a text file, is
-unknown.{common.NEW}"""
+with or without a line of names (x, y, z may then be in any columns), whose points count at the nearest
+points of SURFACE; or data with a value for each vertex, in the formats of the other commands. NaN, and an
+empty value in a text file, is unknown.{common.NEW}"""
 
 
 def add_inpaint(commands):
