@@ -109,7 +109,7 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
   if (this->Report.UnsettledChange > 0.0)
   {
     text << "the search for the smoothest field ended at its largest number of steps; the last "
-            "one changed an eigenvalue by "
+            "one changed the field by "
          << 100.0 * this->Report.UnsettledChange << " %";
     warnings.push_back({ text.str(), inputs });
   }

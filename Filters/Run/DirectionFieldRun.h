@@ -19,7 +19,7 @@ struct DirectionFieldSettings : Settings
   double Angle = 0.0;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
-  int MaximumNumberOfSteps = 50; ///< of the inverse iteration of Smooth; no property
+  int MaximumNumberOfSteps = 100; ///< of Smooth; no property
 
   void Visit(SettingVisitor& visitor) override;
   void Check(const FieldSummary* fields, Problems& problems) override;

@@ -144,7 +144,7 @@ TEST(RunWarnings, ASmoothestFieldThatDoesNotSettleIsReported)
   unfinished.Update(input.Block(), settings, ProgressMonitor());
   WarningLog log;
   ExpectOne(log.Report(unfinished.FindWarnings()),
-    { "largest number of steps", "changed an eigenvalue by", "%" });
+    { "largest number of steps", "changed the field by", "%" });
 }
 
 TEST(RunWarnings, EdgesLeftByTheIntrinsicDelaunayTriangulationAreReported)

@@ -4,6 +4,7 @@
 #include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -87,6 +88,61 @@ TEST(SmoothLineField, SmallestEigenvalueOfTheUnitSphereIsTwo)
     coarser = error;
   }
   EXPECT_NEAR(Smoothest(Icosphere(3, 5.0)).Eigenvalue, 2.0 / 25.0, 0.002);
+}
+
+TEST(SmoothLineField, IsTheEigenvectorOnEveryTriangle)
+{
+  Surface ellipsoid = Icosphere(2);
+  ellipsoid.Vertices.col(1) *= 1.1;
+  ellipsoid.Vertices.col(2) *= 1.3;
+  Surface bumpy = Icosphere(2);
+  for (Index i = 0; i < bumpy.NumberOfVertices(); ++i)
+  {
+    const Eigen::RowVector3d v = bumpy.Vertices.row(i);
+    bumpy.Vertices.row(i) *=
+      1.0 + 0.35 * std::sin(6.0 * v[0] + 1.0) * std::sin(4.0 * v[1]) * std::cos(3.0 * v[2]);
+  }
+  for (const Surface& s : { ellipsoid, bumpy })
+  {
+    const Field field = Smoothest(s, { 1.0, 1.0, 1.0 });
+    const LineFieldOperator lines(field.Mesh);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
+      Eigen::MatrixXd(lines.Stiffness()), Eigen::MatrixXd(lines.Mass().asDiagonal()));
+    // Two modes: all lines may be turned by the same angle.
+    ASSERT_GT(modes.eigenvalues()[2], 1.05 * modes.eigenvalues()[1]);
+    const Points along = Eigen::RowVector3d(1.0, 1.0, 1.0).replicate(s.NumberOfTriangles(), 1);
+    Vector load, diagonal;
+    lines.Project(TangentVectorsFromTriangleVectors(*field.Mesh, s.Vertices, s.Faces, along),
+      Vector::Ones(s.NumberOfTriangles()), load, diagonal);
+    const Eigen::MatrixXd lowest = modes.eigenvectors().leftCols(2);
+    const Points exact = VectorsInSpace(
+      *field.Mesh, s.Vertices, s.Faces, lines.Lines(Vector(lowest * (lowest.transpose() * load))));
+    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+    {
+      const double cosine =
+        std::abs(exact.row(t).normalized().dot(field.Vectors.row(t).normalized()));
+      EXPECT_GT(cosine, std::cos(0.01)) << t;
+    }
+  }
+}
+
+/// Lines in planes through an axis, on spheres of two meshes: five modes are equally smooth.
+TEST(SmoothLineField, FollowsItsStartOnSpheresOfAnyMesh)
+{
+  const Eigen::RowVector3d axis(0.3, -0.5, 0.8);
+  const Surface even = Icosphere(3);
+  Surface uneven = Jittered(even, 0.03, -2.0, 2.0, -2.0, 2.0);
+  uneven.Vertices.rowwise().normalize();
+  const Points a = Smoothest(even, axis).Vectors;
+  const Points b = Smoothest(uneven, axis).Vectors;
+  int different = 0;
+  for (Index t = 0; t < even.NumberOfTriangles(); ++t)
+  {
+    const double cosine = std::abs(a.row(t).normalized().dot(b.row(t).normalized()));
+    different += cosine < std::cos(0.2) ? 1 : 0;
+  }
+  std::printf("%d of %d lines differ\n", different, even.NumberOfTriangles());
+  EXPECT_LT(different, even.NumberOfTriangles() / 50); // at singularities
 }
 
 TEST(SmoothLineField, OrientationDoesNotMatter)

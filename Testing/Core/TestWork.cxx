@@ -123,7 +123,7 @@ TEST(Work, OfTheMumfordShahModelIsTwoFactorisationsPerStep)
     (Counts{ { SolverPurpose::Step, NumberOfSteps }, { SolverPurpose::Edges, NumberOfSteps } }));
 }
 
-/// Inverse iteration converges with the ratio of the first two different eigenvalues.
+/// Lanczos' method reaches 1e-9 in few steps, also where the next eigenvalue is 10 % larger.
 TEST(Work, OfSmoothestLineFieldsIsOneFactorisationAndFewSolves)
 {
   for (const Testing::Surface& s : { Icosphere(3), Icosphere(4), Torus(40, 20), Strip(30, 20) })
@@ -135,7 +135,7 @@ TEST(Work, OfSmoothestLineFieldsIsOneFactorisationAndFewSolves)
       Vector::Ones(s.NumberOfTriangles()), solver);
     EXPECT_EQ(solver.NumberOfFactorizations(), 1);
     EXPECT_GE(solver.NumberOfSolves, 1);
-    EXPECT_LE(solver.NumberOfSolves, 10); // 2 to 4
+    EXPECT_LE(solver.NumberOfSolves, 25); // 4 to 16
   }
 }
 

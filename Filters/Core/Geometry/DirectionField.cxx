@@ -61,7 +61,7 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
   {
     const LineFieldOperator laplacian(assembler.SharedMesh());
     progress.Report(0.4);
-    const auto solver = MakeSolverFor(laplacian.Mass().size(), 10.0, false, parallel);
+    const auto solver = MakeSolverFor(laplacian.Mass().size(), 15.0, false, parallel);
     lines = settings.Method == DirectionMethod::Smooth
       ? SmoothestLineField(laplacian, lines, weights, *solver, progress.Part(0.4, 1.0), &found,
           settings.MaximumNumberOfSteps)

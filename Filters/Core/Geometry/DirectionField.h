@@ -25,7 +25,7 @@ struct DirectionSettings
   bool Perpendicular = false; ///< the maximum-curvature direction instead
   double SmoothingLength = 0.0; ///< of the normals: full width at half maximum, in LengthUnit()
   double HintWeight = 1.0; ///< in 1/LengthUnit()^2
-  int MaximumNumberOfSteps = 50; ///< of SmoothestLineField()
+  int MaximumNumberOfSteps = 100; ///< of SmoothestLineField()
 };
 
 /// hints: tangent vectors for DirectionMethod::Hints, a zero row for a triangle without hint.

@@ -25,62 +25,7 @@ double SolveWith(LinearSolver& solver, const Values& b, Values& x, const Progres
   return report.Converged ? 0.0 : report.Residual;
 }
 
-using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-
-/// Makes the columns of `basis` orthonormal in the inner product of `mass`, by Gram-Schmidt, twice
-/// because of round-off. Dependent columns are dropped. image = A basis throughout. Returns the
-/// rank.
-int Orthonormalise(
-  Eigen::Ref<Columns3> basis, Eigen::Ref<Columns3> image, const Eigen::Ref<const Vector>& mass)
-{
-  constexpr double independent = 1e-6; // of a column's norm must remain
-  const auto norm = [&](int j)
-  { return std::sqrt(basis.col(j).dot(mass.cwiseProduct(basis.col(j)))); };
-  int rank = 0;
-  for (int k = 0; k < 3; ++k)
-  {
-    const double before = norm(k);
-    for (int pass = 0; pass < 2; ++pass)
-    {
-      for (int j = 0; j < rank; ++j)
-      {
-        const double share = basis.col(j).dot(mass.cwiseProduct(basis.col(k)));
-        basis.col(k) -= share * basis.col(j);
-        image.col(k) -= share * image.col(j);
-      }
-    }
-    const double after = norm(k);
-    if (after > independent * before)
-    {
-      basis.col(rank) = basis.col(k) / after;
-      image.col(rank) = image.col(k) / after;
-      ++rank;
-    }
-  }
-  return rank;
-}
-
-/// One step towards the lowest mode of A x = lambda M x (A. Knyazev, SIAM J. Sci. Comput. 23,
-/// 2001): column 0 of `basis` becomes the combination of the three columns with the smallest
-/// Rayleigh quotient, of unit M-norm, and column 2 the share of the last two in it. image = A basis
-/// throughout. Returns the Rayleigh quotient.
-double Improve(
-  Eigen::Ref<Columns3> basis, Eigen::Ref<Columns3> image, const Eigen::Ref<const Vector>& mass)
-{
-  const int rank = Orthonormalise(basis, image, mass);
-  const Eigen::MatrixXd reduced = basis.leftCols(rank).transpose() * image.leftCols(rank);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(reduced);
-  const Vector best = modes.eigenvectors().col(0);
-  const Vector change = basis.middleCols(1, rank - 1) * best.tail(rank - 1);
-  const Vector imageOfChange = image.middleCols(1, rank - 1) * best.tail(rank - 1);
-  basis.col(0) = best[0] * basis.col(0) + change;
-  image.col(0) = best[0] * image.col(0) + imageOfChange;
-  basis.col(2) = change;
-  image.col(2) = imageOfChange;
-  return modes.eigenvalues()[0];
-}
-
-/// The start of the inverse iteration: b = M z, with some of every mode.
+/// The load b = M z of the start, with some of every mode.
 Values StartLoad(const LineFieldOperator& laplacian, const Eigen::Ref<const TangentVectors>& start,
   const Eigen::Ref<const Vector>& weights)
 {
@@ -99,58 +44,142 @@ Values StartLoad(const LineFieldOperator& laplacian, const Eigen::Ref<const Tang
   return b;
 }
 
-/// The combination of the iterate, its inverse iterate and its last change with the smallest
-/// Rayleigh quotient, on each connected component.
-class InverseIteration
+/// The projection of a start onto the modes of K z = lambda M z whose eigenvalue is nearly the
+/// smallest, on each connected component, by Lanczos' method for A^-1 = (K + shift M)^-1. Vectors
+/// that have lost their orthogonality by round-off do no harm to functions of a matrix (V.
+/// Druskin, L. Knizhnerman, Numer. Linear Algebra Appl. 2, 1995).
+class LowestModes
 {
 public:
-  InverseIteration(
-    const LineFieldOperator& laplacian, double shift, const Values& z, const Values& b)
+  LowestModes(const LineFieldOperator& laplacian, double shift, const Vector& start)
     : Mass(laplacian.Mass())
     , Shift(shift)
-    , Components(laplacian.Edges()->ComponentsBegin())
-    , Basis(Columns3::Zero(z.rows(), 3))
-    , Image(Columns3::Zero(z.rows(), 3))
-    , Eigenvalues(this->Components.size() - 1, 0.0)
+    , Next(start)
   {
-    this->Basis.col(0) = z;
-    this->Image.col(0) = b;
-  }
-
-  /// One step. Updates the report; its UnsettledChange is 0 if the eigenvalues no longer change.
-  void Step(
-    LinearSolver& solver, Values& z, LineFieldReport& report, const ProgressMonitor& progress)
-  {
-    const Values b = this->Mass.cwiseProduct(this->Basis.col(0));
-    report.MissedResidual = std::max(report.MissedResidual, SolveWith(solver, b, z, progress));
-    this->Basis.col(1) = z;
-    this->Image.col(1) = b;
-    constexpr double tolerance = 1e-4;
-    double largest = 0.0;
-    for (std::size_t c = 0; c < this->Eigenvalues.size(); ++c)
+    const std::vector<Index>& edges = laplacian.Edges()->ComponentsBegin();
+    for (std::size_t c = 0; c + 1 < edges.size(); ++c)
     {
-      const Index begin = 2 * this->Components[c];
-      const Index count = 2 * this->Components[c + 1] - begin;
-      const double next =
-        Improve(this->Basis.middleRows(begin, count), this->Image.middleRows(begin, count),
-          this->Mass.segment(begin, count)) -
-        this->Shift;
-      largest = std::max(largest, std::abs(this->Eigenvalues[c] - next) / (next + this->Shift));
-      this->Eigenvalues[c] = next;
+      Component component;
+      component.Begin = 2 * edges[c];
+      component.Count = 2 * edges[c + 1] - component.Begin;
+      Normalise(this->Next.segment(component.Begin, component.Count), this->MassOf(component));
+      this->Components.push_back(component);
     }
-    report.UnsettledChange = largest <= tolerance ? 0.0 : largest;
-    report.Lambda = *std::max_element(this->Eigenvalues.begin(), this->Eigenvalues.end());
   }
 
-  Vector Mode() const { return this->Basis.col(0); }
+  /// One step. Updates the report; its UnsettledChange is 0 if no field changes any more.
+  void Step(LinearSolver& solver, LineFieldReport& report, const ProgressMonitor& progress)
+  {
+    this->Basis.push_back(this->Next);
+    const Values b = this->Mass.cwiseProduct(this->Next);
+    Values x = Values::Zero(b.rows(), 1);
+    report.MissedResidual = std::max(report.MissedResidual, SolveWith(solver, b, x, progress));
+    report.UnsettledChange = 0.0;
+    report.Lambda = 0.0;
+    this->Next = x.col(0);
+    for (Component& component : this->Components)
+    {
+      this->Extend(component);
+      const auto [lambda, change] = this->Project(component);
+      report.Lambda = std::max(report.Lambda, lambda);
+      // Modes decay exponentially away from where they live, and lines have a direction there too.
+      constexpr double tolerance = 1e-9;
+      if (change > tolerance)
+      {
+        report.UnsettledChange = std::max(report.UnsettledChange, change);
+      }
+    }
+  }
+
+  Vector Projection() const
+  {
+    Vector z = Vector::Zero(this->Mass.size());
+    for (const Component& component : this->Components)
+    {
+      for (std::size_t k = 0; k < this->Basis.size(); ++k)
+      {
+        z.segment(component.Begin, component.Count) +=
+          component.Shares[static_cast<Eigen::Index>(k)] *
+          this->Basis[k].segment(component.Begin, component.Count);
+      }
+    }
+    return z;
+  }
 
 private:
+  struct Component
+  {
+    Index Begin, Count;
+    std::vector<double> Diagonal, OffDiagonal; ///< V^T M A^-1 V for the basis V
+    Vector Shares; ///< of the basis in the projection
+  };
+
+  Eigen::Ref<const Vector> MassOf(const Component& component) const
+  {
+    return this->Mass.segment(component.Begin, component.Count);
+  }
+
+  /// Returns the norm. A vector of less than `least` becomes zero.
+  static double Normalise(
+    Eigen::Ref<Vector> z, const Eigen::Ref<const Vector>& mass, double least = 0.0)
+  {
+    const double norm = std::sqrt(z.dot(mass.cwiseProduct(z)));
+    const bool isZero = !(norm > least);
+    z *= isZero ? 0.0 : 1.0 / norm;
+    return isZero ? 0.0 : norm;
+  }
+
+  void Extend(Component& component)
+  {
+    const auto part = [&](Vector& z) { return z.segment(component.Begin, component.Count); };
+    auto next = part(this->Next);
+    const auto last = part(this->Basis.back());
+    component.Diagonal.push_back(next.dot(this->MassOf(component).cwiseProduct(last)));
+    next -= component.Diagonal.back() * last;
+    if (this->Basis.size() > 1)
+    {
+      next -= component.OffDiagonal.back() * part(this->Basis[this->Basis.size() - 2]);
+    }
+    // What round-off leaves where the basis already spans all that the start reaches
+    constexpr double negligible = 1e-13;
+    component.OffDiagonal.push_back(
+      Normalise(next, this->MassOf(component), negligible * std::abs(component.Diagonal.front())));
+  }
+
+  /// Returns the smallest eigenvalue of K and the change of the projection, relative to its norm.
+  std::pair<double, double> Project(Component& component) const
+  {
+    // The eigenvalues of equally smooth fields of a sphere differ by 0.1 % on a coarse mesh.
+    constexpr double nearly = 0.005;
+    const auto size = static_cast<Eigen::Index>(component.Diagonal.size());
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes;
+    modes.computeFromTridiagonal(Eigen::Map<const Vector>(component.Diagonal.data(), size),
+      Eigen::Map<const Vector>(component.OffDiagonal.data(), size - 1));
+    const double largest = modes.eigenvalues()[size - 1]; // of A^-1
+    Vector shares = Vector::Zero(size);
+    for (Eigen::Index k = 0; k < size; ++k)
+    {
+      const double value = modes.eigenvalues()[k];
+      if (value > 0.0)
+      {
+        const double distance = (largest / value - 1.0) / nearly;
+        shares += std::exp(-0.5 * distance * distance) * modes.eigenvectors()(0, k) *
+          modes.eigenvectors().col(k);
+      }
+    }
+    Vector difference = shares;
+    difference.head(component.Shares.size()) -= component.Shares;
+    const double norm = shares.norm();
+    const double change = norm > 0.0 ? difference.norm() / norm : 0.0;
+    component.Shares = shares;
+    return { largest > 0.0 ? 1.0 / largest - this->Shift : 0.0, change };
+  }
+
   const Vector& Mass;
   const double Shift;
-  const std::vector<Index>& Components; ///< of the edges
-  Columns3 Basis;
-  Columns3 Image; ///< of the basis under K + Shift M
-  std::vector<double> Eigenvalues; ///< per component, of K
+  std::vector<Component> Components;
+  std::vector<Vector> Basis; ///< orthonormal on each component in the inner product of the mass
+  Vector Next;
 };
 
 } // namespace
@@ -174,17 +203,17 @@ TangentVectors SmoothestLineField(const LineFieldOperator& laplacian,
   Values z = Values::Zero(b.rows(), 1);
   LineFieldReport found;
   found.MissedResidual = SolveWith(solver, b, z, progress.Part(0.7, 0.72));
-  InverseIteration iteration(laplacian, shift, z, b);
+  LowestModes modes(laplacian, shift, z.col(0));
   for (int i = 0; i < maximumNumberOfSteps && (i == 0 || found.UnsettledChange > 0.0); ++i)
   {
-    iteration.Step(solver, z, found, progress.Part(0.72, 0.72));
+    modes.Step(solver, found, progress.Part(0.72, 0.72));
     progress.Report(0.72 + 0.28 * i / maximumNumberOfSteps);
   }
   if (report)
   {
     *report = found;
   }
-  return laplacian.Lines(iteration.Mode());
+  return laplacian.Lines(modes.Projection());
 }
 
 TangentVectors LineFieldFromHints(const LineFieldOperator& laplacian,
