@@ -72,6 +72,13 @@ void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
     result.WarnOnce(Sentence("fewer than 3 places have a value, too few for ")
       << Word::Setting("AutomaticSmoothing") << ": the values hold exactly");
   }
+  if (found.HasUnknownError)
+  {
+    result.WarnOnce(
+      Sentence("the values leave nothing to estimate their deviation from, and the standard errors "
+               "are NaN; they are known with ")
+      << Word::Setting("NoiseLevel") << " above 0 and without " << Word::Setting("Exact"));
+  }
   if (found.IsFlattest)
   {
     result.WarnOnce(Sentence("the values leave slopes open with ")
@@ -128,7 +135,9 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
     this->KeepRange);
   visitor.Switch({ "ComputeError", "",
                    "Add the standard error of the result, which shows where nothing was "
-                   "measured." },
+                   "measured. It leaves out that of the mean with CorrelationLength, and is NaN "
+                   "where NoiseLevel is 0 and the values leave nothing to estimate it from. On "
+                   "cells it is the mean of the corners, an upper bound." },
     this->ComputeError);
   visitor.Choice({ "Boundary", "",
                    "The condition at the boundary of the surface. Natural: the result becomes "

@@ -256,6 +256,40 @@ TEST(InterpolationRun, IsNaNOnComponentsWithoutValues)
   EXPECT_TRUE(Warns(solution, "1 connected component has no known value"));
 }
 
+TEST(InterpolationRun, HasNoStandardErrorWhereTheValuesDoNotShowOne)
+{
+  const TestSurface s = Icosphere(2);
+  const auto errorOf = [&](const Fields& fields, InterpolationSettings settings)
+  {
+    settings.ComputeError = true;
+    const Solution solution = Fitted(s, fields, settings);
+    const Values& error = solution.Arrays.at("Error");
+    const bool isKnown = error.allFinite() && error.maxCoeff() > 0.0;
+    EXPECT_TRUE(isKnown || error.array().isNaN().any());
+    EXPECT_NE(isKnown, Warns(solution, "the standard errors are NaN"));
+    return isKnown;
+  };
+  Fields constant = SamplesOf(s.Vertices.topRows(9));
+  auto alike = std::make_shared<PointSamples>(*constant.Samples);
+  alike->Given.setConstant(7.3);
+  constant.Samples = alike;
+  const Fields one = SamplesOf(s.Vertices.topRows(1));
+  const Fields nine = SamplesOf(s.Vertices.topRows(9));
+  InterpolationSettings smooth;
+  smooth.AutomaticSmoothing = false;
+  InterpolationSettings noisy;
+  noisy.NoiseLevel = 0.1;
+  EXPECT_FALSE(errorOf(one, Exact()));
+  EXPECT_FALSE(errorOf(one, smooth));
+  EXPECT_FALSE(errorOf(constant, Exact()));
+  EXPECT_FALSE(errorOf(constant, InterpolationSettings()));
+  EXPECT_FALSE(errorOf(constant, smooth));
+  EXPECT_TRUE(errorOf(one, noisy));
+  EXPECT_TRUE(errorOf(constant, noisy));
+  EXPECT_TRUE(errorOf(nine, Exact()));
+  EXPECT_TRUE(errorOf(nine, smooth));
+}
+
 TEST(InterpolationRun, ReportsEachKindOfBadValuesInOneLine)
 {
   const TestSurface s = Icosphere(2);

@@ -4,9 +4,8 @@
 
 #include "Core/Models/Interpolation/InfluenceSpectrum.h"
 #include "Core/Models/Interpolation/RangeConstraint.h"
-#include "Core/Models/Interpolation/SmoothFit.h"
+#include "Core/Models/Interpolation/SmoothInterpolationWork.h"
 #include "Core/Operators/CotanWeights.h"
-#include "Core/Solvers/NestedDissection.h"
 #include "Core/Solvers/NotPositiveDefinite.h"
 
 #include <algorithm>
@@ -18,32 +17,6 @@
 
 namespace SurfaceDiffusion
 {
-
-/// What a fit needs beside the settings.
-struct SmoothInterpolation::Work
-{
-  Work(const Assembler& assembler, const CornerWeights& coefficients, const Settings& settings,
-    const ScatteredValues& values, const ParallelFor& parallel)
-    : Data(values)
-    , Energy(assembler, coefficients, settings.Kappa, settings.Rim, parallel)
-    , Fit(Energy, Data.Rows, IsRegularMesh(assembler), parallel)
-  {
-  }
-
-  static bool IsRegularMesh(const Assembler& assembler)
-  {
-    return IsRegular(ZeroMatrix(assembler.Pattern()));
-  }
-
-  MergedValues Data;
-  SmoothnessEnergy Energy;
-  SmoothFit Fit;
-  Flags Open; ///< vertices of components without values, which are held at zero
-  Index Parts = 0; ///< components with values
-  double Area = 0.0; ///< of these components
-  Eigen::RowVectorXd Origin; ///< from which values are measured
-  Values Start;
-};
 
 SmoothInterpolation::SmoothInterpolation(std::shared_ptr<const Assembler> assembler,
   CornerWeights coefficients, const Settings& settings, const ParallelFor& parallel)
@@ -183,14 +156,6 @@ double SmoothInterpolation::StartSmoothing(const Work& work) const
   return rows.Weights.sum() / work.Area / (scale * scale);
 }
 
-/// mu beyond which the mean of the values is lost in the last digits of mu Q. Functions without energy
-/// are all that is left long before.
-double SmoothInterpolation::LargestSmoothing(const Work& work)
-{
-  constexpr double resolved = 1e-13;
-  return work.Data.Rows.Weights.sum() / (resolved * work.Energy.Matrix().diagonal().sum());
-}
-
 void SmoothInterpolation::Prepare(
   Work& work, Result& result, double mu, const Flags& held, const ProgressMonitor& progress) const
 {
@@ -217,60 +182,6 @@ void SmoothInterpolation::Prepare(
   }
 }
 
-void SmoothInterpolation::FitExactly(
-  Work& work, Result& result, const ProgressMonitor& progress) const
-{
-  const ScatteredValues& rows = work.Data.Rows;
-  const Eigen::Index columns = rows.Given.cols();
-  Flags held = work.Open;
-  Values u = work.Start;
-  for (Index i = 0; i < rows.Count(); ++i)
-  {
-    const Index vertex = rows.Places[i].Vertex();
-    if (vertex >= 0)
-    {
-      held[vertex] = true;
-      u.row(vertex) = rows.Given.row(i);
-    }
-  }
-  work.Start = u;
-  this->Prepare(work, result, 1.0, held, progress.Part(0.0, 0.7));
-  Values forces = work.Fit.Solve(0, u);
-  progress.Report(0.8);
-  if (this->Options.ComputeError)
-  {
-    // u^T Q u is the variance of the field times a chi-square variable.
-    const Vector variances = work.Fit.InverseDiagonal(progress.Part(0.8, 0.95)); // without bounds
-    const Vector energies = work.Energy.Squares(u);
-    const double free = std::max<double>(1.0, rows.Count() - work.Parts);
-    for (Eigen::Index c = 0; c < columns; ++c)
-    {
-      const double scale = energies[c] / free;
-      for (Eigen::Index i = 0; i < u.rows(); ++i)
-      {
-        result.Error(i, c) = held[i] ? 0.0 : std::sqrt(std::max(0.0, scale * variances[i]));
-      }
-    }
-  }
-  for (Eigen::Index c = 0; c < columns && this->Options.KeepRange; ++c)
-  {
-    Values column = u.col(c);
-    Values forcesOfColumn = forces.col(c);
-    this->KeepInRange(work, result, c, held, column, forcesOfColumn, progress.Part(0.95, 1.0));
-    u.col(c) = column;
-  }
-  result.U = u;
-  for (Eigen::Index c = 0; c < columns; ++c)
-  {
-    Column& found = result.Columns[static_cast<std::size_t>(c)];
-    const Vector given = rows.Given.col(c);
-    const Vector misfit = given - work.Fit.AtPoints(u).col(c);
-    found.Residual = std::sqrt(rows.Weights.dot(misfit.cwiseAbs2()) / rows.Weights.sum());
-    found.DegreesOfFreedom = rows.Count();
-    found.Roughness = work.Energy.Squares(u.col(c))[0];
-  }
-}
-
 void SmoothInterpolation::FitSmoothly(
   Work& work, Result& result, const ProgressMonitor& progress) const
 {
@@ -279,7 +190,7 @@ void SmoothInterpolation::FitSmoothly(
   const bool isGiven = this->Options.Smoothing == Choice::Given;
   const double noise =
     this->Options.Smoothing == Choice::NoiseLevel ? this->Options.NoiseLevel : 0.0;
-  const double largest = this->LargestSmoothing(work);
+  const double largest = work.LargestSmoothing();
   const double givenMu = std::min(largest, this->Options.Mu);
   const auto measure = [&](double mu, const ProgressMonitor& part)
   {
@@ -390,7 +301,11 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
       this->Options.NoiseLevel > 0.0 ? this->Options.NoiseLevel : std::sqrt(square / free);
     if (this->Options.ComputeError)
     {
-      result.Error.col(first + c) = found.NoiseLevel * deviations; // without bounds
+      const bool isKnown =
+        this->Options.NoiseLevel > 0.0 || work.MeasuresDeviation(first + c, found.NoiseLevel);
+      result.Error.col(first + c) = // without bounds
+        (isKnown ? found.NoiseLevel : std::numeric_limits<double>::quiet_NaN()) * deviations;
+      result.HasUnknownError = result.HasUnknownError || !isKnown;
     }
     found.Roughness = work.Energy.Squares(u)[0];
     result.U.col(first + c) = u;

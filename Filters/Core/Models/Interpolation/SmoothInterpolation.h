@@ -67,7 +67,10 @@ public:
   struct Result
   {
     Values U; ///< n x k; NaN in components without values
-    Values Error; ///< the standard error, n x k; no rows unless asked for
+    /// The standard error, n x k; no rows unless asked for. NaN in columns whose values do not show
+    /// a deviation: one per component, or all on a function without energy.
+    Values Error;
+    bool HasUnknownError = false; ///< in a column
     std::vector<Column> Columns;
     Index UndeterminedComponents = 0; ///< without values
     Index RepeatedValues = 0; ///< at a place that another value has, too
@@ -104,7 +107,6 @@ private:
   void Prepare(Work& work, Result& result, double mu, const Flags& held,
     const ProgressMonitor& progress) const;
   double StartSmoothing(const Work& work) const;
-  static double LargestSmoothing(const Work& work);
 
   std::shared_ptr<const Assembler> Assembly;
   CornerWeights Coefficients;

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// SmoothInterpolation of values that hold.
+
+#include "Core/Models/Interpolation/SmoothInterpolationWork.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace SurfaceDiffusion
+{
+
+void SmoothInterpolation::FitExactly(
+  Work& work, Result& result, const ProgressMonitor& progress) const
+{
+  const ScatteredValues& rows = work.Data.Rows;
+  const Eigen::Index columns = rows.Given.cols();
+  Flags held = work.Open;
+  Values u = work.Start;
+  for (Index i = 0; i < rows.Count(); ++i)
+  {
+    const Index vertex = rows.Places[i].Vertex();
+    if (vertex >= 0)
+    {
+      held[vertex] = true;
+      u.row(vertex) = rows.Given.row(i);
+    }
+  }
+  work.Start = u;
+  this->Prepare(work, result, 1.0, held, progress.Part(0.0, 0.7));
+  Values forces = work.Fit.Solve(0, u);
+  progress.Report(0.8);
+  if (this->Options.ComputeError)
+  {
+    // u^T Q u is the variance of the field times a chi-square variable.
+    const Vector variances = work.Fit.InverseDiagonal(progress.Part(0.8, 0.95)); // without bounds
+    const Vector energies = work.Energy.Squares(u);
+    const double free = std::max<double>(1.0, rows.Count() - work.Parts);
+    for (Eigen::Index c = 0; c < columns; ++c)
+    {
+      const double scale = energies[c] / free;
+      for (Eigen::Index i = 0; i < u.rows(); ++i)
+      {
+        result.Error(i, c) = held[i] ? 0.0 : std::sqrt(std::max(0.0, scale * variances[i]));
+      }
+      if (!work.MeasuresDeviation(c, result.Error.col(c).maxCoeff()))
+      {
+        result.Error.col(c).setConstant(std::numeric_limits<double>::quiet_NaN());
+        result.HasUnknownError = true;
+      }
+    }
+  }
+  for (Eigen::Index c = 0; c < columns && this->Options.KeepRange; ++c)
+  {
+    Values column = u.col(c);
+    Values forcesOfColumn = forces.col(c);
+    this->KeepInRange(work, result, c, held, column, forcesOfColumn, progress.Part(0.95, 1.0));
+    u.col(c) = column;
+  }
+  result.U = u;
+  for (Eigen::Index c = 0; c < columns; ++c)
+  {
+    Column& found = result.Columns[static_cast<std::size_t>(c)];
+    const Vector given = rows.Given.col(c);
+    const Vector misfit = given - work.Fit.AtPoints(u).col(c);
+    found.Residual = std::sqrt(rows.Weights.dot(misfit.cwiseAbs2()) / rows.Weights.sum());
+    found.DegreesOfFreedom = rows.Count();
+    found.Roughness = work.Energy.Squares(u.col(c))[0];
+  }
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Models/Interpolation/SmoothFit.h"
+#include "Core/Models/Interpolation/SmoothInterpolation.h"
+#include "Core/Solvers/NestedDissection.h"
+
+namespace SurfaceDiffusion
+{
+
+/// What a fit needs beside the settings.
+struct SmoothInterpolation::Work
+{
+  Work(const Assembler& assembler, const CornerWeights& coefficients, const Settings& settings,
+    const ScatteredValues& values, const ParallelFor& parallel)
+    : Data(values)
+    , Energy(assembler, coefficients, settings.Kappa, settings.Rim, parallel)
+    , Fit(Energy, Data.Rows, IsRegularMesh(assembler), parallel)
+  {
+  }
+
+  static bool IsRegularMesh(const Assembler& assembler)
+  {
+    return IsRegular(ZeroMatrix(assembler.Pattern()));
+  }
+
+  /// mu beyond which the mean of the values is lost in the last digits of mu Q. Functions without
+  /// energy are all that is left long before.
+  double LargestSmoothing() const
+  {
+    constexpr double resolved = 1e-13;
+    return this->Data.Rows.Weights.sum() / (resolved * this->Energy.Matrix().diagonal().sum());
+  }
+
+  /// Whether a deviation that was estimated from the values of a column is one: there are values
+  /// that functions without energy do not reach, and it is above their round-off.
+  bool MeasuresDeviation(Eigen::Index column, double deviation) const
+  {
+    constexpr double resolved = 1e-12;
+    const auto given = this->Data.Rows.Given.col(column).array() + this->Origin[column];
+    return this->Data.Rows.Count() > this->Parts && deviation > resolved * given.abs().maxCoeff();
+  }
+
+  MergedValues Data;
+  SmoothnessEnergy Energy;
+  SmoothFit Fit;
+  Flags Open; ///< vertices of components without values, which are held at zero
+  Index Parts = 0; ///< components with values
+  double Area = 0.0; ///< of these components
+  Eigen::RowVectorXd Origin; ///< from which values are measured
+  Values Start;
+};
+
+} // namespace SurfaceDiffusion
