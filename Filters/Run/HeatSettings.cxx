@@ -96,6 +96,29 @@ ModelTraits HeatSettings::DescribeModel() const
   return traits;
 }
 
+/// A width in another unit than the coordinates shows as one that the mesh does not resolve, or that is
+/// larger than the surface.
+void HeatSettings::WarnOfWidth(const ModelInputs& inputs, RunResult& result) const
+{
+  constexpr double unresolved = 0.1; // changes waves of two edges by a hundredth
+  constexpr double flat = 2.0; // leaves a thousandth of the longest waves of a sphere
+  const double h = inputs.Units.MeanEdgeLength;
+  const double diagonal = DiagonalOf(inputs.Surface.Points(), inputs.Processes);
+  Sentence text(Word::Setting("FWHM"));
+  text << " is " << this->FWHM;
+  if (this->FWHM > 0.0 && this->FWHM < unresolved * h)
+  {
+    result.WarnOnce(text << ", far below the mean edge length, " << h
+                         << ": the values hardly change (its unit is that of the coordinates)");
+  }
+  else if (this->FWHM > flat * diagonal)
+  {
+    result.WarnOnce(text << ", but the surface is " << diagonal
+                         << " large: little but the mean is left (its unit is that of the "
+                            "coordinates)");
+  }
+}
+
 /// TikhonovDeblurring: the steady state with a blur.
 std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResult& result) const
 {
@@ -137,6 +160,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   {
     return this->MakeDeblurring(inputs, result);
   }
+  this->WarnOfWidth(inputs, result);
   const TriangleMesh& mesh = inputs.Surface.Mesh();
   const bool isPlain = !this->IsDirected() && this->AlongDiffusivity == 1.0;
   const CornerWeights weights = isPlain ? CornerWeights() : MakeWeights(*this, inputs);

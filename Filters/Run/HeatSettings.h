@@ -40,6 +40,7 @@ private:
     return this->AutomaticFidelity || (this->Blur.IsOn() && this->FidelityWeight == 0.0);
   }
   std::unique_ptr<Model> MakeDeblurring(ModelInputs& inputs, RunResult& result) const;
+  void WarnOfWidth(const ModelInputs& inputs, RunResult& result) const;
 };
 
 } // namespace SurfaceDiffusion

@@ -8,6 +8,7 @@
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 #include "Run/Rewording.h"
+#include "Run/UnlikeEdges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -251,6 +252,10 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
   PrepareData(*this, inputs, result);
   result.AddNumber("EffectiveFidelityWeight", this->FidelityWeight);
   const double h = inputs.Units.CoreEdgeLength();
+  if (inputs.Units.Natural)
+  {
+    WarnOfUnlikeEdges(inputs.Surface.Mesh(), result);
+  }
   MumfordShah::Settings settings;
   settings.EdgeWidth = inputs.Units.ToCore(this->EdgeWidth, 1.0, 0.0);
   const double length = this->AutomaticThreshold ? this->UseFoundScales(inputs, settings, result)

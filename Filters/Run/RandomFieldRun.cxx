@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/RandomFieldRun.h"
+#include "Run/UnlikeEdges.h"
 
 #include "Core/Operators/CotanWeights.h"
 
@@ -71,6 +72,8 @@ void RandomFieldRun::Update(
     this->Unresolved << Word::Setting(isGaussian ? "FWHM" : "Range") << " is " << width
                      << ", below two mean edges of " << h << ", which the mesh does not resolve";
   }
+  const bool isInEdges = !((isGaussian ? settings.FWHM : settings.Range) > 0.0);
+  this->UnlikeEdges = isInEdges ? SentenceOfUnlikeEdges(mesh) : Sentence();
   RandomField::Settings field;
   field.Covariance = isGaussian ? FieldCovariance::Gaussian : FieldCovariance::Matern;
   field.Nu = settings.Covariance == RandomFieldSettings::Kind::MaternNu3 ? 3 : 1;
@@ -95,6 +98,10 @@ std::vector<Warning> RandomFieldRun::FindOwnWarnings() const
   if (!(this->Unresolved == Sentence()))
   {
     warnings.push_back({ this->Unresolved, this->SurfaceVersion });
+  }
+  if (!this->UnlikeEdges.Words().empty())
+  {
+    warnings.push_back({ this->UnlikeEdges, this->SurfaceVersion });
   }
   AppendMissedResidual(this->MissedResidual, warnings);
   return warnings;

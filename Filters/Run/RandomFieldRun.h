@@ -50,10 +50,11 @@ public:
   bool ExcludesMasked() const override { return true; }
 
 private:
-  /// About widths that the mesh does not resolve, and about solves that missed their tolerance.
+  /// About widths that do not suit the mesh, and about solves that missed their tolerance.
   std::vector<Warning> FindOwnWarnings() const override;
 
   Sentence Unresolved; ///< empty if the mesh resolves the width
+  Sentence UnlikeEdges; ///< empty unless components need widths of their own
   double MissedResidual = 0.0;
 };
 

@@ -321,6 +321,20 @@ Points VertexPositions(const Surface& surface)
   return positions;
 }
 
+double DiagonalOf(const Points& points, const Reduction& processes)
+{
+  constexpr double none = std::numeric_limits<double>::lowest();
+  std::array<double, 6> ends; // the largest coordinates, and minus the smallest
+  ends.fill(none);
+  for (Eigen::Index axis = 0; points.rows() > 0 && axis < 3; ++axis)
+  {
+    ends[static_cast<std::size_t>(axis)] = points.col(axis).maxCoeff();
+    ends[static_cast<std::size_t>(axis) + 3] = -points.col(axis).minCoeff();
+  }
+  processes.Max(ends.data(), 6);
+  return std::hypot(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
+}
+
 TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vectors)
 {
   return surface.Delaunay() ? surface.Delaunay()->Transport(vectors) : vectors;

@@ -132,4 +132,7 @@ Points VertexPositions(const Surface& surface);
 /// e1 per triangle of Mesh(), from tangent vectors of InputMesh().
 TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vectors);
 
+/// The diagonal of the bounding box of all pieces, in coordinate units.
+double DiagonalOf(const Points& points, const Reduction& processes);
+
 } // namespace SurfaceDiffusion

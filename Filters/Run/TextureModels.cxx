@@ -8,6 +8,7 @@
 #include "Core/Operators/CotanWeights.h"
 #include "Run/ModelInputs.h"
 #include "Run/TextureRates.h"
+#include "Run/UnlikeEdges.h"
 
 #include <algorithm>
 #include <array>
@@ -49,21 +50,6 @@ std::unique_ptr<ReactionDiffusion> MakeCoarseModel(CoarseSpace& space, const Mod
   return std::make_unique<ReactionDiffusion>(space.Assembly, reaction, std::move(chemicals),
     PointData::FromValues(space.Restrict(inputs.Surface.Mesh(), inputs.Data.Start)), settings,
     inputs.Parallel);
-}
-
-/// The diagonal of the bounding box of all pieces, in coordinate units.
-double DiagonalOf(const Points& points, const Reduction& processes)
-{
-  constexpr double none = std::numeric_limits<double>::lowest();
-  std::array<double, 6> ends; // the largest coordinates, and minus the smallest
-  ends.fill(none);
-  for (Eigen::Index axis = 0; points.rows() > 0 && axis < 3; ++axis)
-  {
-    ends[static_cast<std::size_t>(axis)] = points.col(axis).maxCoeff();
-    ends[static_cast<std::size_t>(axis) + 3] = -points.col(axis).minCoeff();
-  }
-  processes.Max(ends.data(), 6);
-  return std::hypot(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
 }
 
 } // namespace
@@ -125,6 +111,10 @@ TextureRates TextureSettings::MakeRates(const ModelInputs& inputs, RunResult& re
     unit, inputs);
   const Eigen::Matrix2d jacobian = this->JacobianAtRest();
   double scale = 1.0;
+  if (units.Natural && !(this->FeatureSize > 0.0))
+  {
+    WarnOfUnlikeEdges(inputs.Surface.Mesh(), result);
+  }
   if (this->FeatureSize > 0.0)
   {
     scale = rates.ScaleToFeatureSize(this->FeatureSize / units.LengthUnit, jacobian);

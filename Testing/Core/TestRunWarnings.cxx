@@ -5,6 +5,8 @@
 #include "Run/DirectionFieldRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/RandomFieldRun.h"
+#include "Run/TextureSettings.h"
 
 #include <gtest/gtest.h>
 
@@ -170,6 +172,49 @@ TEST(RunWarnings, SettingsWithoutEffectOrOutsideTheirRangeAreReported)
   heat.FidelityWeight = 1.0;
   heat.Blur.FWHM = 4.0;
   ExpectOne(WarningsOf(input, heat), { "BlurFWHM is 4", "from 2 to 8 mean edge lengths" });
+}
+
+TEST(RunWarnings, WidthsInAnotherUnitThanTheCoordinatesAreReported)
+{
+  const RunInput input = NoisyNormals(); // of radius 1, with edges of 0.15
+  HeatSettings heat;
+  for (const double good : { 0.05, 0.4, 3.0 })
+  {
+    heat.FWHM = good;
+    EXPECT_TRUE(WarningsOf(input, heat).empty()) << good;
+  }
+  heat.FWHM = 1e-3;
+  ExpectOne(WarningsOf(input, heat), { "FWHM is 0.001", "the mean edge length, 0.15" });
+  heat.FWHM = 1e3;
+  ExpectOne(WarningsOf(input, heat), { "FWHM is 1000, but the surface is 3.4" });
+}
+
+TEST(RunWarnings, LengthsInEdgesOfComponentsThatAreUnlikeAreReported)
+{
+  const auto pair = [](double factor)
+  {
+    return RunInput(Testing::Joined(Testing::Icosphere(3),
+      Testing::Moved(Testing::Scaled(Testing::Icosphere(2), factor), { 5.0, 0.0, 0.0 })));
+  };
+  TextureSettings texture;
+  texture.NumberOfTimeSteps = 1;
+  EXPECT_TRUE(WarningsOf(pair(0.5), texture).empty());
+  ExpectOne(
+    WarningsOf(pair(0.01), texture), { "mean edge lengths of connected components go from" });
+  texture.FeatureSize = 0.5;
+  for (const Sentence& warning : WarningsOf(pair(0.01), texture))
+  {
+    EXPECT_EQ(warning.Text().find("connected components go from"), std::string::npos) << warning;
+  }
+
+  RandomFieldSettings field;
+  RandomFieldRun alike(SerialFor());
+  alike.Update(pair(0.5).Block(), field, ProgressMonitor());
+  EXPECT_TRUE(alike.FindWarnings().empty());
+  RandomFieldRun unlike(SerialFor());
+  unlike.Update(pair(0.01).Block(), field, ProgressMonitor());
+  WarningLog log;
+  ExpectOne(log.Report(unlike.FindWarnings()), { "lengths are in h" });
 }
 
 } // namespace SurfaceDiffusion
