@@ -41,8 +41,16 @@ void WarnOf(Index count, const char* ofOne, const char* ofSeveral, RunResult& re
   }
 }
 
-void WarnOfValues(const KnownValues& known, double maximumDistance, RunResult& result)
+void WarnOfValues(
+  const KnownValues& known, double maximumDistance, double diagonal, RunResult& result)
 {
+  constexpr double strange = 0.1;
+  if (known.MedianDistance > strange * diagonal)
+  {
+    result.WarnOnce(Sentence("half of the points with values are farther than ")
+      << known.MedianDistance << " from the surface, which is " << diagonal
+      << " large (their unit or origin may be another)");
+  }
   if (known.TooFar > 0)
   {
     result.WarnOnce(Sentence() << known.TooFar << (known.TooFar == 1 ? " value is" : " values are")
@@ -229,7 +237,8 @@ std::unique_ptr<Model> InterpolationSettings::Make(ModelInputs& inputs, RunResul
     throw InputError("no value is known; allowed: one or more with a weight above 0");
   }
   result.HasMissing = inputs.Data.Missing.any();
-  WarnOfValues(known, this->MaximumDistance, result);
+  WarnOfValues(
+    known, this->MaximumDistance, DiagonalOf(inputs.Surface.Points(), inputs.Processes), result);
   result.Numbers.push_back(Output::OfNumber(
     "NumberOfValues", known.Values.Count(), Combination::Sum, OutputType::Integer));
   result.Numbers.push_back(

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/PointSamples.h"
 
+#include "Core/Foundation/RobustRange.h"
 #include "Core/Geometry/NearestPoints.h"
 #include "Run/CellFields.h"
 #include "Run/Fields.h"
@@ -327,6 +328,7 @@ KnownValues FindKnownValues(
     const PointSamples& samples = *fields.Samples;
     known.AreSamples = true;
     known.SamplesName = samples.Name;
+    std::vector<double> distances;
     for (std::size_t i = 0; i < fields.Projected->size(); ++i)
     {
       const ProjectedSample& sample = (*fields.Projected)[i];
@@ -334,6 +336,7 @@ KnownValues FindKnownValues(
       {
         continue;
       }
+      distances.push_back(sample.Distance);
       if (!IsWithin(sample, maximumDistance))
       {
         ++known.TooFar;
@@ -356,6 +359,7 @@ KnownValues FindKnownValues(
       collector.Add(
         place, static_cast<Eigen::Index>(i), samples.Weights.empty() ? 1.0 : samples.Weights[i]);
     }
+    known.MedianDistance = Median(distances);
     known.Values = collector.Take(samples.Given);
     return known;
   }

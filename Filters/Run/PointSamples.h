@@ -47,6 +47,7 @@ struct KnownValues
 {
   ScatteredValues Values; ///< in units of the numerics
   Index TooFar = 0; ///< samples beyond the largest distance
+  double MedianDistance = 0.0; ///< of the samples, in coordinate units
   Index Outside = 0; ///< samples in excluded triangles
   std::string SamplesName; ///< empty unless they are samples
   bool AreSamples = false;

@@ -290,6 +290,17 @@ TEST(InterpolationRun, HasNoStandardErrorWhereTheValuesDoNotShowOne)
   EXPECT_TRUE(errorOf(nine, smooth));
 }
 
+TEST(InterpolationRun, WarnsOfPointsInAnotherUnit)
+{
+  const TestSurface s = Icosphere(2);
+  const Points near = 1.1 * s.Vertices.topRows(9);
+  EXPECT_FALSE(Warns(Fitted(s, SamplesOf(near), Exact()), "their unit or origin"));
+  for (const double unit : { 0.001, 1000.0 })
+  {
+    EXPECT_TRUE(Warns(Fitted(s, SamplesOf(unit * near), Exact()), "their unit or origin"));
+  }
+}
+
 TEST(InterpolationRun, ReportsEachKindOfBadValuesInOneLine)
 {
   const TestSurface s = Icosphere(2);

@@ -65,4 +65,11 @@ double RobustRange(const Values& values, const Flags& missing, const Reduction& 
   return range;
 }
 
+double Median(std::vector<double>& values)
+{
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return values.empty() ? 0.0 : *middle;
+}
+
 } // namespace SurfaceDiffusion

@@ -32,4 +32,7 @@ ValueBounds RobustBounds(std::vector<double>& values);
 /// missing. Over several processes the widest of their bounds count. 0 without values.
 double RobustRange(const Values& values, const Flags& missing, const Reduction& reduction);
 
+/// The upper median, 0 of none. Takes linear time, and reorders the values.
+double Median(std::vector<double>& values);
+
 } // namespace SurfaceDiffusion

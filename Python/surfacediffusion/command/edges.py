@@ -9,7 +9,7 @@ from .. import mumford_shah, tensor_diffusion
 from .. import segment as find_regions
 from ..files import FileError, new_data, read_surface
 from ..files.content import check_output_folder
-from . import common, values
+from . import common, inputs, values
 from .report import counted, number, number_text
 from .stages import change_data, columns_of_arrays, given, require_array, write_array
 
@@ -123,7 +123,7 @@ def add_segment(commands):
         "the order of the means, or in that of --means.",
         ["lh.midthickness.surf.gii lh.myelin.func.gii lh.regions.func.gii --regions 3"])
     common.data_to_data(parser, "the labels")
-    parser.add_argument("--regions", metavar="K", default=2,
+    parser.add_argument("--regions", metavar="K",
                         type=values.whole_numbers("a whole number from 2 to 1000", 2, 1000),
                         help="the number of regions (default 2)")
     common.positive(parser, "--weight", "W",
@@ -136,8 +136,11 @@ def add_segment(commands):
 
 
 def segment(arguments, report):
-    options = {"number_of_regions": arguments.regions, **given(fidelity_weight=arguments.weight)}
+    options = {"number_of_regions": arguments.regions or 2, **given(fidelity_weight=arguments.weight)}
     if arguments.means:
+        if arguments.regions not in (None, len(arguments.means)):
+            raise inputs.ArgumentProblem(f"--regions is {arguments.regions}, but --means has "
+                                         f"{len(arguments.means)} numbers; allowed: one of the two")
         options.update(means=arguments.means, number_of_regions=len(arguments.means))
     found = report.facts.setdefault("segmentations", [])
 

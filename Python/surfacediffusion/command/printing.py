@@ -19,6 +19,9 @@ PATTERNS = {"labyrinth": 18.0, "spots": 5.0, "net": 30.0}
 #: a minute of processor time at this size.
 COARSE_START_SIZE = 250_000
 
+#: As many as `refine` makes by default; more take many minutes.
+MOST_TRIANGLES = 4_000_000
+
 
 def reaction_of_pattern(pattern):
     return {"diffusion_rate1": 2.6 * PATTERNS[pattern], "diffusion_rate2": 2.6}
@@ -55,6 +58,11 @@ def print_texture(arguments, surface, report):
     if not size < extent:
         raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, but the part is {extent:.4g} {unit} "
                               "from corner to corner; allowed: smaller features")
+    smallest = EDGES_PER_WAVELENGTH * _edge_of_triangles(part)
+    if size < smallest:
+        raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, for which the part, {extent:.4g} {unit} "
+                              f"from corner to corner, needs more than {MOST_TRIANGLES} triangles; "
+                              f"allowed: {smallest:.2g} {unit} or more")
     if height is not None and not abs(height) < extent:
         raise ArgumentProblem(f"--relief is {height:.4g} {unit}, but the part is {extent:.4g} {unit} from "
                               "corner to corner; allowed: less")
@@ -91,6 +99,13 @@ def print_texture(arguments, surface, report):
     with report.timed("write"):
         export(arguments.output, points, triangles, np.repeat(shades[:, None], 3, axis=1), unit)
     report.say_written(arguments.output, ", ".join(said))
+
+
+def _edge_of_triangles(part):
+    """The edge length of so many triangles as the part may have at most, of equal sides."""
+    a, b, c = (np.asarray(part.points, dtype=float)[part.triangles[:, k]] for k in range(3))
+    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+    return float(np.sqrt(area / MOST_TRIANGLES * 4 / np.sqrt(3)))
 
 
 def welded(surface):
