@@ -54,7 +54,8 @@
  * (mu Q + sum w_i b_i b_i^T)/s^2, where Q is the matrix of the energy (F. Lindgren, H. Rue,
  * J. Lindstrom, J. R. Statist. Soc. B 73, 2011): `<name>Error` is its standard deviation at each
  * point. s is NoiseLevel, or estimated from the misfit; NaN if the values leave none. The error of
- * the mean with CorrelationLength is left out. On cells it is the mean of the corners, an upper bound.
+ * the mean with CorrelationLength is left out. On cells it is the mean of the corners, an upper
+ * bound.
  *
  * **Boundary.** Natural: du/dn = 0 and d(Laplace u)/dn = 0, so that u becomes flat towards the
  * boundary. Free: the Hessian energy (O. Stein, A. Jacobson, M. Wardetzky, E. Grinspun, ACM Trans.

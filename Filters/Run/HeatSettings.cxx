@@ -96,22 +96,29 @@ ModelTraits HeatSettings::DescribeModel() const
   return traits;
 }
 
-/// A width in another unit than the coordinates shows as one that the mesh does not resolve, or that is
-/// larger than the surface.
+/// A width in another unit than the coordinates shows as one that the mesh does not resolve, or that
+/// is larger than the surface.
 void HeatSettings::WarnOfWidth(const ModelInputs& inputs, RunResult& result) const
 {
+  if (!(this->FWHM > 0.0))
+  {
+    return;
+  }
   constexpr double unresolved = 0.1; // changes waves of two edges by a hundredth
   constexpr double flat = 2.0; // leaves a thousandth of the longest waves of a sphere
   const double h = inputs.Units.MeanEdgeLength;
   const double diagonal = DiagonalOf(inputs.Surface.Points(), inputs.Processes);
+  double edges = inputs.Surface.InputMesh().NumberOfEdges();
+  inputs.Processes.Sum(&edges, 1);
   Sentence text(Word::Setting("FWHM"));
   text << " is " << this->FWHM;
-  if (this->FWHM > 0.0 && this->FWHM < unresolved * h)
+  if (edges > 0.0 && this->FWHM < unresolved * h)
   {
     result.WarnOnce(text << ", far below the mean edge length, " << h
-                         << ": the values hardly change (its unit is that of the coordinates)");
+                         << ", and values hardly change where edges are so long (its unit is that "
+                            "of the coordinates)");
   }
-  else if (this->FWHM > flat * diagonal)
+  else if (edges > 0.0 && this->FWHM > flat * diagonal)
   {
     result.WarnOnce(text << ", but the surface is " << diagonal
                          << " large: little but the mean is left (its unit is that of the "

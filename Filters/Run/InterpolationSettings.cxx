@@ -44,11 +44,11 @@ void WarnOf(Index count, const char* ofOne, const char* ofSeveral, RunResult& re
 void WarnOfValues(
   const KnownValues& known, double maximumDistance, double diagonal, RunResult& result)
 {
-  constexpr double strange = 0.1;
-  if (known.MedianDistance > strange * diagonal)
+  constexpr double strange = 0.25;
+  if (maximumDistance == 0.0 && known.MedianDistance > strange * diagonal)
   {
-    result.WarnOnce(Sentence("half of the points with values are farther than ")
-      << known.MedianDistance << " from the surface, which is " << diagonal
+    result.WarnOnce(Sentence("half of the points with values are ")
+      << known.MedianDistance << " or more from the surface, which is " << diagonal
       << " large (their unit or origin may be another)");
   }
   if (known.TooFar > 0)

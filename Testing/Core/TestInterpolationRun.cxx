@@ -288,6 +288,17 @@ TEST(InterpolationRun, HasNoStandardErrorWhereTheValuesDoNotShowOne)
   EXPECT_TRUE(errorOf(constant, noisy));
   EXPECT_TRUE(errorOf(nine, Exact()));
   EXPECT_TRUE(errorOf(nine, smooth));
+  smooth.Smoothing = 1e-12; // as good as exact, and nothing is left of the values
+  EXPECT_FALSE(errorOf(nine, smooth));
+  auto light = std::make_shared<PointSamples>(*nine.Samples);
+  light->Weights.assign(9, 1e-26);
+  Fields weighted = nine;
+  weighted.Samples = light;
+  EXPECT_TRUE(errorOf(weighted, InterpolationSettings()));
+  const Fields all = SamplesOf(s.Vertices);
+  InterpolationSettings exact = Exact();
+  exact.ComputeError = true;
+  EXPECT_TRUE(Fitted(s, all, exact).Arrays.at("Error").isZero(0.0)); // known everywhere
 }
 
 TEST(InterpolationRun, WarnsOfPointsInAnotherUnit)
@@ -298,6 +309,9 @@ TEST(InterpolationRun, WarnsOfPointsInAnotherUnit)
   for (const double unit : { 0.001, 1000.0 })
   {
     EXPECT_TRUE(Warns(Fitted(s, SamplesOf(unit * near), Exact()), "their unit or origin"));
+    InterpolationSettings filtered = Exact();
+    filtered.MaximumDistance = 1e6;
+    EXPECT_FALSE(Warns(Fitted(s, SamplesOf(unit * near), filtered), "their unit or origin"));
   }
 }
 

@@ -145,6 +145,26 @@ TEST(SmoothLineField, FollowsItsStartOnSpheresOfAnyMesh)
   EXPECT_LT(different, even.NumberOfTriangles() / 50); // at singularities
 }
 
+/// Small parts of scans have the accuracy of large ones.
+TEST(SmoothLineField, SettlesOnComponentsOfAnySize)
+{
+  const Surface ball = Icosphere(3);
+  for (const Surface& part : { Strip(3, 3), Tetrahedron(), Icosphere(1) })
+  {
+    for (const double size : { 1e-1, 1e-3, 1e-5 })
+    {
+      const Surface s = Joined(ball, Moved(Scaled(part, size), { 3.0, 0.0, 0.0 }));
+      const auto mesh = MakeMesh(s);
+      const auto solver = MakeCholeskySolver();
+      LineFieldReport report;
+      SmoothestLineField(LineFieldOperator(mesh), TangentVectors::Ones(s.NumberOfTriangles(), 2),
+        Vector::Ones(s.NumberOfTriangles()), *solver, ProgressMonitor(), &report);
+      EXPECT_EQ(report.UnsettledChange, 0.0) << size;
+      EXPECT_EQ(report.MissedResidual, 0.0) << size;
+    }
+  }
+}
+
 TEST(SmoothLineField, OrientationDoesNotMatter)
 {
   const Surface s = Icosphere(2);

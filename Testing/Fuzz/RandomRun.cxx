@@ -344,8 +344,13 @@ bool RunInterpolation(
       {
         const auto part =
           array->middleRows(array->rows() > 0 ? begin : 0, array->rows() > 0 ? size : 0);
-        Require(isKnown ? part.allFinite() : part.array().isNaN().all(),
-          "an interpolation is not finite, or known without a value");
+        for (Eigen::Index k = 0; k < part.cols(); ++k)
+        {
+          const bool isNaN = part.col(k).array().isNaN().all();
+          const bool mayBeNaN = !isKnown || (array == &found.Error && found.HasUnknownError);
+          Require((isKnown && part.col(k).allFinite()) || (mayBeNaN && isNaN),
+            "an interpolation is not finite, or known without a value");
+        }
       }
     }
     for (Eigen::Index k = 0; k < u.cols() && settings.KeepRange; ++k)

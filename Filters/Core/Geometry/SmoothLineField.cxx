@@ -51,9 +51,10 @@ Values StartLoad(const LineFieldOperator& laplacian, const Eigen::Ref<const Tang
 class LowestModes
 {
 public:
-  LowestModes(const LineFieldOperator& laplacian, double shift, const Vector& start)
+  /// shifts: per row.
+  LowestModes(const LineFieldOperator& laplacian, const Vector& shifts, const Vector& start)
     : Mass(laplacian.Mass())
-    , Shift(shift)
+    , Shifts(shifts)
     , Next(start)
   {
     const std::vector<Index>& edges = laplacian.Edges()->ComponentsBegin();
@@ -125,8 +126,13 @@ private:
   {
     const double norm = std::sqrt(z.dot(mass.cwiseProduct(z)));
     const bool isZero = !(norm > least);
-    z *= isZero ? 0.0 : 1.0 / norm;
-    return isZero ? 0.0 : norm;
+    if (isZero)
+    {
+      z.setZero();
+      return 0.0;
+    }
+    z /= norm;
+    return norm;
   }
 
   void Extend(Component& component)
@@ -153,8 +159,10 @@ private:
     constexpr double nearly = 0.005;
     const auto size = static_cast<Eigen::Index>(component.Diagonal.size());
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes;
-    modes.computeFromTridiagonal(Eigen::Map<const Vector>(component.Diagonal.data(), size),
-      Eigen::Map<const Vector>(component.OffDiagonal.data(), size - 1));
+    // Eigen takes entries that are far below 1 for zeros.
+    const double unit = component.Diagonal.front() > 0.0 ? component.Diagonal.front() : 1.0;
+    modes.computeFromTridiagonal(Eigen::Map<const Vector>(component.Diagonal.data(), size) / unit,
+      Eigen::Map<const Vector>(component.OffDiagonal.data(), size - 1) / unit);
     const double largest = modes.eigenvalues()[size - 1]; // of A^-1
     Vector shares = Vector::Zero(size);
     for (Eigen::Index k = 0; k < size; ++k)
@@ -172,15 +180,35 @@ private:
     const double norm = shares.norm();
     const double change = norm > 0.0 ? difference.norm() / norm : 0.0;
     component.Shares = shares;
-    return { largest > 0.0 ? 1.0 / largest - this->Shift : 0.0, change };
+    const double lambda =
+      largest > 0.0 ? 1.0 / (unit * largest) - this->Shifts[component.Begin] : 0.0;
+    return { lambda, change };
   }
 
   const Vector& Mass;
-  const double Shift;
+  const Vector& Shifts;
   std::vector<Component> Components;
   std::vector<Vector> Basis; ///< orthonormal on each component in the inner product of the mass
   Vector Next;
 };
+
+/// Per row, 1e-3 over the area of its connected component: far below the smallest eigenvalue that
+/// curvature causes (2 on the unit sphere), and keeps the matrix of flat components, whose smallest
+/// eigenvalue is 0, definite.
+Vector Shifts(const LineFieldOperator& laplacian)
+{
+  constexpr double relative = 1e-3;
+  const std::vector<Index>& edges = laplacian.Edges()->ComponentsBegin();
+  Vector shifts(laplacian.Mass().size());
+  for (std::size_t c = 0; c + 1 < edges.size(); ++c)
+  {
+    const Index begin = 2 * edges[c];
+    const Index count = 2 * edges[c + 1] - begin;
+    const double area = 0.5 * laplacian.Mass().segment(begin, count).sum();
+    shifts.segment(begin, count).setConstant(relative / area);
+  }
+  return shifts;
+}
 
 } // namespace
 
@@ -189,25 +217,26 @@ TangentVectors SmoothestLineField(const LineFieldOperator& laplacian,
   LinearSolver& solver, const ProgressMonitor& progress, LineFieldReport* report,
   int maximumNumberOfSteps)
 {
-  // Far below the smallest eigenvalue that curvature causes (2 on the unit sphere), and keeps the
-  // matrix of a flat surface, whose smallest eigenvalue is 0, definite.
-  constexpr double relativeShift = 1e-3;
-  const Vector& mass = laplacian.Mass();
-  const double area = 0.5 * mass.sum();
-  const double shift = relativeShift / area;
+  const Vector shifts = Shifts(laplacian);
   SparseMatrix matrix = laplacian.Stiffness();
-  matrix.diagonal() += shift * mass;
+  matrix.diagonal() += shifts.cwiseProduct(laplacian.Mass());
   solver.SetMatrix(matrix, progress.Part(0.0, 0.7));
 
   const Values b = StartLoad(laplacian, start, weights);
   Values z = Values::Zero(b.rows(), 1);
   LineFieldReport found;
   found.MissedResidual = SolveWith(solver, b, z, progress.Part(0.7, 0.72));
-  LowestModes modes(laplacian, shift, z.col(0));
+  LowestModes modes(laplacian, shifts, z.col(0));
   for (int i = 0; i < maximumNumberOfSteps && (i == 0 || found.UnsettledChange > 0.0); ++i)
   {
     modes.Step(solver, found, progress.Part(0.72, 0.72));
-    progress.Report(0.72 + 0.28 * i / maximumNumberOfSteps);
+    constexpr double usual = 20.0; // steps
+    progress.Report(0.72 + 0.28 * (i < usual ? 0.9 * i / usual : 0.9));
+  }
+  constexpr double visible = 1e-6; // below it are changes by the tolerance of the solver
+  if (found.UnsettledChange < visible)
+  {
+    found.UnsettledChange = 0.0;
   }
   if (report)
   {

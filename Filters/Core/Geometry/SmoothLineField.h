@@ -27,8 +27,8 @@ struct LineFieldReport
 /// start with the factors exp(-((lambda - l) / (0.005 l))^2 / 2). start: lines and their weights
 /// per triangle (zero rows: none). Every connected component has a field of its own.
 ///
-/// `solver` is given K + 1e-3/area M, which is definite on flat surfaces too and has the same
-/// eigenvectors, and is asked for 10 to 20 solutions.
+/// `solver` is given K + 1e-3/area M, with the area of each component, which is definite on flat
+/// surfaces too and has the same eigenvectors, and is asked for 10 to 20 solutions.
 TangentVectors SmoothestLineField(const LineFieldOperator& laplacian,
   const Eigen::Ref<const TangentVectors>& start, const Eigen::Ref<const Vector>& weights,
   LinearSolver& solver, const ProgressMonitor& progress = ProgressMonitor(),

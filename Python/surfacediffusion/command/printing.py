@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import Surface, refine, relief, turing_texture
-from .._refinement import EDGES_PER_WAVELENGTH
+from .._refinement import EDGES_PER_WAVELENGTH, FEWEST_EDGES_PER_WAVELENGTH
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export, kind_of_export
 from .inputs import ArgumentProblem
@@ -19,7 +19,7 @@ PATTERNS = {"labyrinth": 18.0, "spots": 5.0, "net": 30.0}
 #: a minute of processor time at this size.
 COARSE_START_SIZE = 250_000
 
-#: As many as `refine` makes by default; more take many minutes.
+#: As many as `refine` makes by default. With fewer edges per wavelength there is no pattern.
 MOST_TRIANGLES = 4_000_000
 
 
@@ -58,11 +58,11 @@ def print_texture(arguments, surface, report):
     if not size < extent:
         raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, but the part is {extent:.4g} {unit} "
                               "from corner to corner; allowed: smaller features")
-    smallest = EDGES_PER_WAVELENGTH * _edge_of_triangles(part)
+    smallest = FEWEST_EDGES_PER_WAVELENGTH * _edge_of_triangles(part)
     if size < smallest:
         raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, for which the part, {extent:.4g} {unit} "
                               f"from corner to corner, needs more than {MOST_TRIANGLES} triangles; "
-                              f"allowed: {smallest:.2g} {unit} or more")
+                              f"allowed: {1.01 * smallest:.3g} {unit} or more")
     if height is not None and not abs(height) < extent:
         raise ArgumentProblem(f"--relief is {height:.4g} {unit}, but the part is {extent:.4g} {unit} from "
                               "corner to corner; allowed: less")

@@ -45,7 +45,11 @@ void SmoothInterpolation::FitExactly(
       {
         result.Error(i, c) = held[i] ? 0.0 : std::sqrt(std::max(0.0, scale * variances[i]));
       }
-      if (!work.MeasuresDeviation(c, result.Error.col(c).maxCoeff()))
+      // The energy of values that a function without energy reaches is round-off.
+      constexpr double resolved = 1e-12;
+      const bool isKnown = rows.Count() > work.Parts &&
+        (held.all() || result.Error.col(c).maxCoeff() > resolved * work.SizeOf(c));
+      if (!isKnown)
       {
         result.Error.col(c).setConstant(std::numeric_limits<double>::quiet_NaN());
         result.HasUnknownError = true;

@@ -295,14 +295,18 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     const Vector given = rows.Given.col(first + c);
     const Vector misfit = given - work.Fit.AtPoints(u).col(0);
     const double square = rows.Weights.dot(misfit.cwiseAbs2());
-    const double free = std::max(1e-6 * rows.Count(), rows.Count() - found.DegreesOfFreedom);
+    const double left = rows.Count() - found.DegreesOfFreedom;
+    const double fewest = 1e-6 * rows.Count();
+    const double free = std::max(fewest, left);
     found.Residual = std::sqrt(square / rows.Weights.sum());
     found.NoiseLevel =
       this->Options.NoiseLevel > 0.0 ? this->Options.NoiseLevel : std::sqrt(square / free);
     if (this->Options.ComputeError)
     {
-      const bool isKnown =
-        this->Options.NoiseLevel > 0.0 || work.MeasuresDeviation(first + c, found.NoiseLevel);
+      // Nothing is left if the fit reaches all values, by its freedom or because they are alike.
+      constexpr double resolved = 16.0 * std::numeric_limits<double>::epsilon();
+      const bool isKnown = this->Options.NoiseLevel > 0.0 ||
+        (left > fewest && found.Residual > resolved * work.SizeOf(first + c));
       result.Error.col(first + c) = // without bounds
         (isKnown ? found.NoiseLevel : std::numeric_limits<double>::quiet_NaN()) * deviations;
       result.HasUnknownError = result.HasUnknownError || !isKnown;

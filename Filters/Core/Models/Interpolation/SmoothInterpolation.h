@@ -68,7 +68,7 @@ public:
   {
     Values U; ///< n x k; NaN in components without values
     /// The standard error, n x k; no rows unless asked for. NaN in columns whose values do not show
-    /// a deviation: one per component, or all on a function without energy.
+    /// a deviation: one per component, all on a function without energy, or all reached by the fit.
     Values Error;
     bool HasUnknownError = false; ///< in a column
     std::vector<Column> Columns;

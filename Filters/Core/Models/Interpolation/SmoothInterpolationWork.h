@@ -33,13 +33,10 @@ struct SmoothInterpolation::Work
     return this->Data.Rows.Weights.sum() / (resolved * this->Energy.Matrix().diagonal().sum());
   }
 
-  /// Whether a deviation that was estimated from the values of a column is one: there are values
-  /// that functions without energy do not reach, and it is above their round-off.
-  bool MeasuresDeviation(Eigen::Index column, double deviation) const
+  /// The largest magnitude of the values of a column.
+  double SizeOf(Eigen::Index column) const
   {
-    constexpr double resolved = 1e-12;
-    const auto given = this->Data.Rows.Given.col(column).array() + this->Origin[column];
-    return this->Data.Rows.Count() > this->Parts && deviation > resolved * given.abs().maxCoeff();
+    return (this->Data.Rows.Given.col(column).array() + this->Origin[column]).abs().maxCoeff();
   }
 
   MergedValues Data;
