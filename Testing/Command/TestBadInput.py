@@ -215,7 +215,7 @@ CASES = [
     ("texture lh.surf.gii 5 out.off", "out.off: the name announces no format"),
     ("segment lh.surf.gii lh.func.gii out.func.gii --regions 3 --means 1 2", "--regions is 3, but --means has 2 "
      "numbers; allowed: the same number, or --means alone"),
-    ("texture lh.surf.gii 1e-4 out.stl --relief 1e-5", "needs more than 4000000 triangles; allowed: "),
+    ("texture lh.surf.gii 1e-4mm out.stl --relief 1e-5mm", "needs more than 4000000 triangles; allowed: "),
     ("directions lh.surf.gii out.func.gii", "out.func.gii: the name announces no format"),
     ("curvature lh.surf.gii out.func.gii --fwhm -1", "argument --fwhm: is '-1'"),
     ("distance lh.surf.gii out.npy", "the sources are missing; allowed: one of SOURCES and --from"),
