@@ -125,8 +125,7 @@ private:
     Eigen::Ref<Vector> z, const Eigen::Ref<const Vector>& mass, double least = 0.0)
   {
     const double norm = std::sqrt(z.dot(mass.cwiseProduct(z)));
-    const bool isZero = !(norm > least);
-    if (isZero)
+    if (!(norm > least))
     {
       z.setZero();
       return 0.0;
@@ -231,7 +230,7 @@ TangentVectors SmoothestLineField(const LineFieldOperator& laplacian,
   {
     modes.Step(solver, found, progress.Part(0.72, 0.72));
     constexpr double usual = 20.0; // steps
-    progress.Report(0.72 + 0.28 * (i < usual ? 0.9 * i / usual : 0.9));
+    progress.Report(0.72 + 0.25 * std::min(1.0, i / usual));
   }
   constexpr double visible = 1e-6; // below it are changes by the tolerance of the solver
   if (found.UnsettledChange < visible)

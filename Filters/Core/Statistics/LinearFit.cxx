@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Statistics/LinearFit.h"
 
+#include "Core/Foundation/RobustRange.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
@@ -111,13 +113,7 @@ Points OffsetsFrom(Index vertex, const std::vector<Index>& vertices, const FitDa
 
 double RobustDeviation(std::vector<double>& deviations)
 {
-  if (deviations.empty())
-  {
-    return 0.0;
-  }
-  const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-  std::nth_element(deviations.begin(), middle, deviations.end());
-  return 1.4826 * *middle;
+  return 1.4826 * Median(deviations);
 }
 
 } // namespace

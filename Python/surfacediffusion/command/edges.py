@@ -140,7 +140,8 @@ def segment(arguments, report):
     if arguments.means:
         if arguments.regions not in (None, len(arguments.means)):
             raise inputs.ArgumentProblem(f"--regions is {arguments.regions}, but --means has "
-                                         f"{len(arguments.means)} numbers; allowed: the same number, or --means alone")
+                                         f"{len(arguments.means)} numbers; allowed: the same number, "
+                                         "or --means alone")
         options.update(means=arguments.means, number_of_regions=len(arguments.means))
     found = report.facts.setdefault("segmentations", [])
 

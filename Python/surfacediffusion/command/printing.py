@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import Surface, refine, relief, turing_texture
-from .._refinement import EDGES_PER_WAVELENGTH, FEWEST_EDGES_PER_WAVELENGTH
+from .._refinement import EDGES_PER_WAVELENGTH, FEWEST_EDGES_PER_WAVELENGTH, MAXIMUM_TRIANGLES
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export, kind_of_export
 from .inputs import ArgumentProblem
@@ -18,9 +18,6 @@ PATTERNS = {"labyrinth": 18.0, "spots": 5.0, "net": 30.0}
 #: Patterns from a coarser mesh are flatter: more points than by default may have all steps, which take
 #: a minute of processor time at this size.
 COARSE_START_SIZE = 250_000
-
-#: As many as `refine` makes by default. With fewer edges per wavelength there is no pattern.
-MOST_TRIANGLES = 4_000_000
 
 
 def reaction_of_pattern(pattern):
@@ -61,7 +58,7 @@ def print_texture(arguments, surface, report):
     smallest = FEWEST_EDGES_PER_WAVELENGTH * _edge_of_triangles(part)
     if size < smallest:
         raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, for which the part, {extent:.4g} {unit} "
-                              f"from corner to corner, needs more than {MOST_TRIANGLES} triangles; "
+                              f"from corner to corner, needs more than {MAXIMUM_TRIANGLES} triangles; "
                               f"allowed: {1.01 * smallest:.3g} {unit} or more")
     if height is not None and not abs(height) < extent:
         raise ArgumentProblem(f"--relief is {height:.4g} {unit}, but the part is {extent:.4g} {unit} from "
@@ -102,10 +99,9 @@ def print_texture(arguments, surface, report):
 
 
 def _edge_of_triangles(part):
-    """The edge length of so many triangles as the part may have at most, of equal sides."""
-    a, b, c = (np.asarray(part.points, dtype=float)[part.triangles[:, k]] for k in range(3))
-    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
-    return float(np.sqrt(area / MOST_TRIANGLES * 4 / np.sqrt(3)))
+    """The edge length of so many triangles as `refine` makes by default, of equal sides."""
+    area = part._triangle_areas().sum()
+    return float(np.sqrt(area / MAXIMUM_TRIANGLES * 4 / np.sqrt(3)))
 
 
 def welded(surface):
