@@ -301,7 +301,9 @@ def smooth_to_fwhm(
         return estimate_fwhm(surface, maps, mask=mask, demean=demean).pooled
 
     def smooth(maps: Any, width: float, **keywords: Any) -> NDArray[Any]:
-        result: NDArray[Any] = heat(surface, maps, fwhm=width, mask=mask, mask_mode="Exclude",
+        # The time of heat's own `fwhm`, whose warnings would name a width that no caller has given.
+        result: NDArray[Any] = heat(surface, maps, time_step=width * width / (16.0 * np.log(2.0)),
+                                    units="Absolute", mask=mask, mask_mode="Exclude",
                                     time_integrator="Exponential", number_of_time_steps=1, **keywords)
         return result
 

@@ -163,6 +163,15 @@ class SmoothTo(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, "but smoothing reaches [0-9.]+; allowed"):
                     sd.smooth_to_fwhm(self.surface, noise, width * RADIUS)
 
+    def test_width_just_above_that_of_the_noise_is_reached_without_a_warning(self):
+        # The width that is added is far below an edge, and the caller has not given it.
+        noise = gaussian_noise(self.surface, 3 * self.h)
+        found = sd.estimate_fwhm(self.surface, noise).pooled
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            smooth = sd.smooth_to_fwhm(self.surface, noise, 1.00001 * found, residuals=noise)
+        self.assertLess(np.abs(smooth - noise).max(), 0.01 * np.abs(noise).max())
+
     def test_series_is_measured_without_its_mean(self):
         signal = 100.0 * self.surface.points[:, [2]] / RADIUS
         noise = gaussian_noise(self.surface, 3 * self.h)
