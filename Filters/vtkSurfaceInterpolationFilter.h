@@ -53,9 +53,9 @@
  * **Standard errors.** u is the mean of a Gaussian field with the precision
  * (mu Q + sum w_i b_i b_i^T)/s^2, where Q is the matrix of the energy (F. Lindgren, H. Rue,
  * J. Lindstrom, J. R. Statist. Soc. B 73, 2011): `<name>Error` is its standard deviation at each
- * point. s is NoiseLevel, or estimated from the misfit; NaN if the values leave none. The error of
- * the mean with CorrelationLength is left out. On cells it is the mean of the corners, an upper
- * bound.
+ * point. s is NoiseLevel, or estimated from the misfit; NaN if the values leave none. With
+ * CorrelationLength the error of the mean m is added, (1 - a_i)^2 Var(m), where a is the fit of
+ * values that are all 1. On cells it is the mean of the corners, an upper bound.
  *
  * **Boundary.** Natural: du/dn = 0 and d(Laplace u)/dn = 0, so that u becomes flat towards the
  * boundary. Free: the Hessian energy (O. Stein, A. Jacobson, M. Wardetzky, E. Grinspun, ACM Trans.

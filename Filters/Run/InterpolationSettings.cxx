@@ -143,7 +143,7 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
     this->KeepRange);
   visitor.Switch({ "ComputeError", "",
                    "Add the standard error of the result, which shows where nothing was "
-                   "measured. It leaves out that of the mean with CorrelationLength, and is NaN "
+                   "measured. With CorrelationLength it contains that of the mean. It is NaN "
                    "where NoiseLevel is 0 and the values leave nothing to estimate it from. On "
                    "cells it is the mean of the corners, an upper bound." },
     this->ComputeError);

@@ -324,6 +324,65 @@ TEST(Smoothing, StandardErrorsAreThoseOfTheDenseMatrix)
   }
 }
 
+/// The errors of the linear predictor L of the fit and its mean: the diagonal of
+/// (L B - 1) C (L B - 1)^T + L W^-1 L^T s^2, with the covariance C of the field.
+TEST(Smoothing, StandardErrorsContainThatOfTheMean)
+{
+  const Surface s = Joined(Disk(5), Moved(Icosphere(1, 0.4), { 3.0, 0.0, 0.0 }));
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Index n = mesh.NumberOfVertices();
+  ScatteredValues data = ValuesInTriangles(mesh, Noise(mesh), 12);
+  const Index d = data.Count();
+  data.Given = Values::Identity(d, d); // the columns of L
+  for (Index i = 0; i < d; ++i)
+  {
+    data.Weights[i] = 1.0 + 0.2 * (i % 4);
+  }
+  Eigen::MatrixXd b = Eigen::MatrixXd::Zero(d, n);
+  for (Index i = 0; i < d; ++i)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      b(i, data.Places[i].Vertices[a]) += data.Places[i].Coordinates[a];
+    }
+  }
+  const double noise = 0.7;
+  for (const Choice choice : { Choice::Given, Choice::Exact })
+  {
+    for (const RimCondition rim : { RimCondition::Natural, RimCondition::Free })
+    {
+      for (const double length : { 0.1, 0.5, 5.0 })
+      {
+        Interpolation::Settings settings = InterpolationSettings(choice, 0.02);
+        settings.Rim = rim;
+        settings.Kappa = mesh.LengthUnit() / length;
+        settings.ComputeError = true;
+        settings.NoiseLevel = noise;
+        const Interpolation::Result result = Interpolate(assembler, data, settings);
+        const SmoothnessEnergy energy(*assembler, CotanWeights(mesh), settings.Kappa, rim);
+        const Eigen::MatrixXd field = Eigen::MatrixXd(energy.Matrix()).inverse();
+        const Eigen::MatrixXd error = result.U * b - Eigen::MatrixXd::Identity(n, n);
+        const Vector variance = (error * field * error.transpose()).diagonal();
+        const Vector ofNoise =
+          (result.U * data.Weights.cwiseInverse().asDiagonal() * result.U.transpose()).diagonal();
+        for (Eigen::Index c = 0; c < d; ++c)
+        {
+          const Vector expected = choice == Choice::Exact
+            ? variance
+            : Vector(noise * noise * (variance / 0.02 + ofNoise));
+          const Vector found = result.Error.col(c).cwiseAbs2();
+          // Exact values hold by a penalty, and their errors are up to the variance of the field.
+          const bool isExact = choice == Choice::Exact;
+          const double scale = isExact ? found.maxCoeff() / expected.maxCoeff() : 1.0;
+          const double difference = (found - scale * expected).cwiseAbs().maxCoeff();
+          EXPECT_LT(difference, (isExact ? 2e-3 : 1e-9) * found.maxCoeff()) << length;
+        }
+      }
+    }
+  }
+}
+
 TEST(Smoothing, TendsToTheExactValuesAndToTheirMean)
 {
   const Surface s = Icosphere(3);

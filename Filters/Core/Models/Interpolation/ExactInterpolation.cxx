@@ -30,14 +30,16 @@ void SmoothInterpolation::FitExactly(
   }
   work.Start = u;
   this->Prepare(work, result, 1.0, held, progress.Part(0.0, 0.7));
-  Values forces = work.Fit.Solve(0, u);
+  Values forces = work.Fit.Solve(rows.Given, u);
   progress.Report(0.8);
   if (this->Options.ComputeError)
   {
     // u^T Q u is the variance of the field times a chi-square variable.
-    const Vector variances = work.Fit.InverseDiagonal(progress.Part(0.8, 0.95)); // without bounds
+    const Vector variances = work.Fit.InverseDiagonal(progress.Part(0.8, 0.95)) +
+      this->VarianceOfMean(work, held, true, progress.Part(0.95, 0.95)); // without bounds
     const Vector energies = work.Energy.Squares(u);
-    const double free = std::max<double>(1.0, rows.Count() - work.Parts);
+    const Index means = this->Options.Kappa > 0.0 ? 1 : work.Parts; // estimated with the field
+    const double free = std::max<double>(1.0, rows.Count() - means);
     for (Eigen::Index c = 0; c < columns; ++c)
     {
       const double scale = energies[c] / free;
@@ -47,7 +49,7 @@ void SmoothInterpolation::FitExactly(
       }
       // The energy of values that a function without energy reaches is round-off.
       constexpr double resolved = 1e-12;
-      const bool isKnown = rows.Count() > work.Parts &&
+      const bool isKnown = rows.Count() > means &&
         (held.all() || result.Error.col(c).maxCoeff() > resolved * work.SizeOf(c));
       if (!isKnown)
       {

@@ -54,11 +54,12 @@ bool RangeConstraint::Impose(SmoothFit& fit, const Prepare& prepare, const Flags
   std::vector<Side> active(static_cast<std::size_t>(n), Inside);
   std::vector<char> isForced(static_cast<std::size_t>(n), 0);
   const bool isPossible = this->Force(held, active, isForced);
+  const Values given = this->Data.Given.col(this->Column);
   Values derivative;
   for (int iteration = 0; iteration < most; ++iteration)
   {
     progress.Report(static_cast<double>(iteration) / most);
-    fit.Derivative(this->Column, u, forces, derivative);
+    fit.Derivative(given, u, forces, derivative);
     bool isSettled = true;
     bool isFeasible = true;
     for (Index i = 0; i < n; ++i)
@@ -106,7 +107,7 @@ bool RangeConstraint::Impose(SmoothFit& fit, const Prepare& prepare, const Flags
     }
     const double done = static_cast<double>(iteration) / most;
     prepare(all, progress.Part(done, done));
-    forces = fit.Solve(this->Column, u);
+    forces = fit.Solve(given, u);
   }
   u = u.cwiseMax(this->Low).cwiseMin(this->High).eval();
   return false;

@@ -131,10 +131,10 @@ Values SmoothFit::ToVertices(const Values& v) const
 }
 
 void SmoothFit::Derivative(
-  Eigen::Index firstColumn, const Values& u, const Values& forces, Values& derivative) const
+  const Values& given, const Values& u, const Values& forces, Values& derivative) const
 {
   this->Energy.Multiply(u, derivative);
-  const Values misfit = this->Data.Given.middleCols(firstColumn, u.cols()) - this->AtPoints(u);
+  const Values misfit = given - this->AtPoints(u);
   derivative =
     this->Mu * derivative - this->ToVertices(this->Weights.asDiagonal() * misfit + forces);
 }
@@ -177,18 +177,17 @@ Values SmoothFit::InverseAtPoints(const Values& v) const
   return this->AtPoints(x);
 }
 
-Values SmoothFit::Solve(Eigen::Index firstColumn, Values& u)
+Values SmoothFit::Solve(const Values& given, Values& u)
 {
   constexpr int most = 30;
   constexpr double resolved = 1e-14; // of the values
   Values step;
   Values forces = Values::Zero(this->Data.Count(), u.cols()); // multipliers of exact values
-  const auto data = this->Data.Given.middleCols(firstColumn, u.cols());
   std::vector<double> last(static_cast<std::size_t>(u.cols()), 0.0);
   std::vector<char> isDone(last.size(), 0);
   for (int iteration = 0; iteration < most; ++iteration)
   {
-    this->Derivative(firstColumn, u, forces, step);
+    this->Derivative(given, u, forces, step);
     this->ApplyInverse(step);
     // Each column ends by itself, so that it has the bits that it has alone.
     for (Eigen::Index c = 0; c < u.cols(); ++c)
@@ -215,7 +214,7 @@ Values SmoothFit::Solve(Eigen::Index firstColumn, Values& u)
     }
     if (this->IsExact)
     {
-      forces += this->Weights.asDiagonal() * (data - this->AtPoints(u));
+      forces += this->Weights.asDiagonal() * (given - this->AtPoints(u));
     }
   }
   this->LastStep = 0.0;

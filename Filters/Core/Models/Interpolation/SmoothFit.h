@@ -37,9 +37,9 @@ public:
   /// Take mu_0 again.
   void Restore();
 
-  /// u: on entry the values of the held vertices and a start elsewhere, for as many columns of the
-  /// data. Returns the multipliers of exact values, d x k.
-  Values Solve(Eigen::Index firstColumn, Values& u);
+  /// given: values d at the points of the data, d x k. u: on entry the values of the held vertices
+  /// and a start elsewhere, n x k. Returns the multipliers of exact values, d x k.
+  Values Solve(const Values& given, Values& u);
 
   /// Whether the factor of another mu gave Solve() a solution with the round-off of its own: the last
   /// steps were below 1e-12 of it.
@@ -64,7 +64,7 @@ public:
 
   /// mu Q u - B^T W (d - B u) - B^T forces: the derivative of the energy.
   void Derivative(
-    Eigen::Index firstColumn, const Values& u, const Values& forces, Values& derivative) const;
+    const Values& given, const Values& u, const Values& forces, Values& derivative) const;
 
   double GetSmoothing() const { return this->Mu; }
 

@@ -165,6 +165,7 @@ void SmoothInterpolation::Prepare(
   if (pivots.Negative > 0 && isFree && !result.DropsNegativeCurvature)
   {
     work.Energy.DropNegativeCurvature();
+    work.EnergyOfMean = -1.0;
     result.DropsNegativeCurvature = true;
     pivots = work.Fit.Prepare(mu, held, isExact, progress);
   }
@@ -173,6 +174,7 @@ void SmoothInterpolation::Prepare(
     // Enough to be resolved, and little beside the energy.
     const double n = static_cast<double>(held.size());
     work.Energy.AddTension(std::max(1e-6, 1e-12 * n * n) / work.Area);
+    work.EnergyOfMean = -1.0;
     result.IsFlattest = true;
     pivots = work.Fit.Prepare(mu, held, isExact, progress);
   }
@@ -180,6 +182,37 @@ void SmoothInterpolation::Prepare(
   {
     throw NotPositiveDefinite();
   }
+}
+
+/// What the error of the mean adds to the variance of the fit that is prepared, in units of s^2. The
+/// variance of exact values is in units of s^2 / mu, with mu = 1. `held`: vertices that the data hold.
+Vector SmoothInterpolation::VarianceOfMean(
+  Work& work, const Flags& held, bool isExact, const ProgressMonitor& progress) const
+{
+  const ScatteredValues& rows = work.Data.Rows;
+  const auto n = static_cast<Index>(held.size());
+  if (!(this->Options.Kappa > 0.0))
+  {
+    return Vector::Zero(n);
+  }
+  const double allWeights = rows.Weights.sum();
+  if (work.EnergyOfMean < 0.0)
+  {
+    ScatteredValues weightless = rows;
+    weightless.Weights.setZero();
+    SmoothFit prior(work.Energy, weightless, Work::IsRegularMesh(*this->Assembly), this->Parallel);
+    const PivotCounts pivots = prior.Prepare(1.0, work.Open, false, progress);
+    const Values weights = rows.Weights / allWeights;
+    // Constants that have no energy within round-off leave no error: all of it is in the fit.
+    work.EnergyOfMean = pivots.Open + pivots.Negative > 0
+      ? 0.0
+      : weights.col(0).dot(prior.InverseAtPoints(weights).col(0));
+  }
+  Values ones = held.select(Values::Ones(n, 1), 0.0);
+  work.Fit.Solve(Values::Ones(rows.Count(), 1), ones);
+  const double ofNoise = isExact ? 0.0 : 1.0 / allWeights;
+  const double variance = ofNoise + work.EnergyOfMean / work.Fit.GetSmoothing();
+  return variance * (1.0 - ones.col(0).array()).square();
 }
 
 void SmoothInterpolation::FitSmoothly(
@@ -274,15 +307,19 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     this->Prepare(work, result, mu, work.Open, progress.Part(0.0, 0.3));
   }
   Values all = work.Start.middleCols(first, count);
-  const Values forces = work.Fit.Solve(first, all);
+  const Values forces = work.Fit.Solve(rows.Given.middleCols(first, count), all);
   if (!work.Fit.IsResolved())
   {
     work.Fit.Restore();
     return false;
   }
-  const Vector deviations = this->Options.ComputeError
-    ? Vector(work.Fit.InverseDiagonal(progress.Part(0.4, 0.8)).cwiseMax(0.0).cwiseSqrt())
-    : Vector();
+  Vector deviations;
+  if (this->Options.ComputeError)
+  {
+    deviations = (work.Fit.InverseDiagonal(progress.Part(0.4, 0.7)).cwiseMax(0.0) +
+      this->VarianceOfMean(work, work.Open, false, progress.Part(0.7, 0.8)))
+                   .cwiseSqrt();
+  }
   for (Eigen::Index c = 0; c < count; ++c)
   {
     Column& found = result.Columns[static_cast<std::size_t>(first + c)];

@@ -24,8 +24,11 @@ namespace SurfaceDiffusion
 /// mean, to which u returns beyond the distance 1/kappa from the values.
 ///
 /// u is also the mean of a Gaussian field with the precision (mu Q + B^T W B) / s^2, where s is the
-/// standard deviation of values with weight 1: from it follow standard errors. They do not contain
-/// the error of the mean from which values are measured with kappa > 0.
+/// standard deviation of values with weight 1: from it follow standard errors. With kappa > 0 the
+/// mean m = w^T d, from which values are measured, adds
+///   (1 - (A 1)_i)^2 Var(m),  Var(m) / s^2 = w^T (W^-1 + B (mu Q)^-1 B^T) w,
+/// with the fit A 1 of values that are all 1. The errors of both parts do not correlate, since the
+/// fit is the best linear predictor.
 class SmoothInterpolation
 {
 public:
@@ -68,7 +71,8 @@ public:
   {
     Values U; ///< n x k; NaN in components without values
     /// The standard error, n x k; no rows unless asked for. NaN in columns whose values do not show
-    /// a deviation: one per component, all on a function without energy, or all reached by the fit.
+    /// a deviation: one (with kappa = 0: per component), all on a function without energy, or all
+    /// reached by the fit.
     Values Error;
     bool HasUnknownError = false; ///< in a column
     std::vector<Column> Columns;
@@ -106,6 +110,8 @@ private:
     Values& forces, const ProgressMonitor& progress) const;
   void Prepare(Work& work, Result& result, double mu, const Flags& held,
     const ProgressMonitor& progress) const;
+  Vector VarianceOfMean(
+    Work& work, const Flags& held, bool isExact, const ProgressMonitor& progress) const;
   double StartSmoothing(const Work& work) const;
 
   std::shared_ptr<const Assembler> Assembly;

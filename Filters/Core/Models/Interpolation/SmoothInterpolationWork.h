@@ -47,6 +47,8 @@ struct SmoothInterpolation::Work
   double Area = 0.0; ///< of these components
   Eigen::RowVectorXd Origin; ///< from which values are measured
   Values Start;
+  /// w^T B Q^-1 B^T w for the weights w of the mean of the values; below 0: not known
+  double EnergyOfMean = -1.0;
 };
 
 } // namespace SurfaceDiffusion
