@@ -5,6 +5,9 @@
 #include "Core/Geometry/PrincipalDirections.h"
 #include "Core/Geometry/SmoothLineField.h"
 #include "Core/Solvers/SolverChoice.h"
+#include "Core/Surface/TangentVectors.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +36,55 @@ std::unique_ptr<LinearSolver> MakeSolverFor(
   return solver;
 }
 
+/// Per triangle, (v_1 + i v_2)^2 of a vector field v that is smooth in space and has no symmetry: it
+/// chooses where curvature does not, as on a sphere or a plane, by the places of the points and not
+/// by their numbers.
+TangentVectors SquaresOfFixedLines(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
+  const Eigen::Ref<const Triangles>& triangles, const ParallelFor& parallel)
+{
+  const auto corner = [&](Index t, int a) -> Eigen::Vector3d
+  { return points.row(triangles(mesh.InputTriangle()[t], a)).transpose(); };
+  Eigen::AlignedBox3d box;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      box.extend(corner(t, a));
+    }
+  }
+  const Eigen::Vector3d main(1.0, 0.2, 0.1);
+  Eigen::Matrix3d slope;
+  slope << 0.07, -0.13, 0.19, 0.23, 0.05, -0.11, -0.17, 0.29, 0.03;
+  TangentVectors squares(mesh.NumberOfTriangles(), 2);
+  ForEach(parallel, mesh.NumberOfTriangles(),
+    [&](Index t)
+    {
+      const Eigen::Vector3d middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0;
+      const Eigen::Vector3d v = main + slope * (middle - box.center()) / box.diagonal().norm();
+      const Eigen::Vector2d line = TriangleAxes(mesh, points, triangles, t).transpose() * v;
+      squares.row(t) << line[0] * line[0] - line[1] * line[1], 2.0 * line[0] * line[1];
+    });
+  return squares;
+}
+
+/// Add a little of the fixed lines to lines and their weights.
+void AddFixedLines(const TangentVectors& squares, TangentVectors& lines, Vector& weights,
+  const ParallelFor& parallel)
+{
+  constexpr double share = 1e-3;
+  ForEach(parallel, static_cast<Index>(lines.rows()),
+    [&](Index t)
+    {
+      const Eigen::RowVector2d line = lines.row(t);
+      const Eigen::RowVector2d square(
+        line[0] * line[0] - line[1] * line[1], 2.0 * line[0] * line[1]);
+      const Eigen::RowVector2d sum = weights[t] * square + share * squares.row(t);
+      const double angle = 0.5 * std::atan2(sum[1], sum[0]);
+      weights[t] = sum.norm();
+      lines.row(t) << std::cos(angle), std::sin(angle);
+    });
+}
+
 } // namespace
 
 TangentVectors MakeDirectionField(const Assembler& assembler,
@@ -53,9 +105,14 @@ TangentVectors MakeDirectionField(const Assembler& assembler,
       settings.SmoothingLength, *solver, parallel, progress.Part(0.0, 0.3));
     missed = principal.MissedResidual;
     lines = std::move(principal.MinimumCurvature);
-    RotateLines(lines, settings.Perpendicular ? quarterTurn : 0.0, parallel);
     const double mean = principal.Difference.size() > 0 ? principal.Difference.mean() : 0.0;
     weights = principal.Difference / (mean > 0.0 ? mean : 1.0);
+    if (settings.Method == DirectionMethod::Smooth)
+    {
+      AddFixedLines(
+        SquaresOfFixedLines(mesh, points, triangles, parallel), lines, weights, parallel);
+    }
+    RotateLines(lines, settings.Perpendicular ? quarterTurn : 0.0, parallel);
   }
   if (settings.Method != DirectionMethod::PrincipalCurvature && mesh.NumberOfTriangles() > 0)
   {

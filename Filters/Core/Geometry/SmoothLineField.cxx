@@ -25,7 +25,8 @@ double SolveWith(LinearSolver& solver, const Values& b, Values& x, const Progres
   return report.Converged ? 0.0 : report.Residual;
 }
 
-/// The load b = M z of the start, with some of every mode.
+/// The load b = M z of the start, with so little of every mode that it chooses where the start has
+/// nothing.
 Values StartLoad(const LineFieldOperator& laplacian, const Eigen::Ref<const TangentVectors>& start,
   const Eigen::Ref<const Vector>& weights)
 {
@@ -34,7 +35,7 @@ Values StartLoad(const LineFieldOperator& laplacian, const Eigen::Ref<const Tang
   laplacian.Project(start, weights, preferred, diagonal);
   const double size = preferred.cwiseAbs().maxCoeff();
   const double largest = mass.maxCoeff();
-  constexpr double noise = 1e-3;
+  constexpr double noise = 1e-9;
   Values b(mass.size(), 1);
   for (Eigen::Index i = 0; i < mass.size(); ++i)
   {
