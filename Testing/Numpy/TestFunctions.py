@@ -726,6 +726,8 @@ class Threads(unittest.TestCase):
             np.testing.assert_array_equal(result, wanted)
 
     @unittest.skipUnless(hasattr(os, "fork"), "needs fork")
+    @unittest.skipIf("libtsan" in os.environ.get("LD_PRELOAD", ""),
+                     "the thread sanitizer does not follow threads of a forked process")
     def test_forked_process_has_threads_of_its_own(self):
         surface = sd.sphere(6)
         values = np.random.default_rng(1).normal(size=surface.n_points)
