@@ -200,7 +200,8 @@ NB_MODULE(_core, m)
     .def("stiffness", &SurfaceOperators::Stiffness, "diffusivity"_a.none())
     .def("gradient", &SurfaceOperators::Gradient)
     .def("modes", &SurfaceOperators::Modes, "diffusivity"_a.none(), "count"_a, "progress"_a.none())
-    .def("number_of_vertices", &SurfaceOperators::NumberOfVertices);
+    .def("number_of_vertices", &SurfaceOperators::NumberOfVertices)
+    .def("coincident_points", &SurfaceOperators::CoincidentPoints);
 
   nb::class_<SurfaceFields>(m, "SurfaceFields")
     .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
@@ -213,6 +214,7 @@ NB_MODULE(_core, m)
       "progress"_a.none())
     .def("areas", &SurfaceFields::Areas)
     .def("number_of_vertices", &SurfaceFields::NumberOfVertices)
+    .def("coincident_points", &SurfaceFields::CoincidentPoints)
     .def("length_unit", &SurfaceFields::LengthUnit)
     .def("mean_edge_length", &SurfaceFields::MeanEdgeLength);
 
@@ -222,6 +224,7 @@ NB_MODULE(_core, m)
            double, const nb::object&>(),
       "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "slowness"_a.none(), "directions"_a.none(),
       "directions_on_faces"_a, "along"_a, "across"_a, "progress"_a.none())
+    .def("coincident_points", &SurfaceDistances::CoincidentPoints)
     .def("has_point", &SurfaceDistances::HasPoint, "point"_a)
     .def("has_triangle", &SurfaceDistances::HasTriangle, "row"_a)
     .def("project", &SurfaceDistances::Project, "points"_a, "progress"_a.none())

@@ -29,6 +29,9 @@ public:
     const std::optional<FactorArray>& slowness, const std::optional<DoubleArray>& directions,
     bool directionsOnFaces, double along, double across, const nanobind::object& progress);
 
+  /// Boundary points at the place of another one.
+  Index CoincidentPoints() const { return this->Built->Diagnostics().CoincidentBoundaryPoints; }
+
   /// Whether a triangle that takes part uses the point, or that triangle of the input takes part.
   bool HasPoint(std::int64_t point) const
   {

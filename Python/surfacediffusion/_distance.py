@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, take_along
-from ._run import Progress, ProgressReporter
+from ._run import Progress, ProgressReporter, warn_of_seams
 from ._settings import check_positive, shorten
 from ._surface import (
     Surface, SurfaceLike, as_directions, as_flags, as_numbers, as_surface, find_mask, find_place,
@@ -372,6 +372,7 @@ def _make_fronts(surface: Surface, speeds: _Speeds, mask: Any) -> Any:
             fronts = _core.Distances(surface._core, flags, on_faces, slowness, directions,
                                      directions_on_faces, float(speeds.along), float(speeds.across), None)
             surface._runs["distance"] = contents.digest(), fronts
+    warn_of_seams(fronts, "no way leads from one to the other")
     return fronts
 
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._functions import left_out
-from ._run import Progress, ProgressReporter, part_of, warn
+from ._run import Progress, ProgressReporter, part_of, warn, warn_of_seams
 from ._settings import check_positive, shorten
 from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place
 
@@ -369,6 +369,7 @@ def make_fields(surface: Surface, mask: Any) -> Any:
     if fields.number_of_vertices() == 0:
         raise ValueError("no triangle of the surface is left; allowed: one or more that are not masked "
                          "and have an area")
+    warn_of_seams(fields, "nothing flows between them")
     return fields
 
 

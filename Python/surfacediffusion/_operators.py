@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._run import Progress, ProgressReporter
+from ._run import Progress, ProgressReporter, warn_of_seams
 from ._settings import shorten
 from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask
 
@@ -118,6 +118,7 @@ def stiffness_matrix(
     surface = as_surface(surface)
     tensors = _as_tensors(surface, diffusivity)
     operators = _make_operators(surface, mask, _as_delaunay(surface, intrinsic_delaunay, tensors))
+    warn_of_seams(operators, "nothing flows between them")
     return sparse.csr_array(operators.stiffness(tensors), shape=(surface.n_points,) * 2)
 
 
@@ -212,6 +213,7 @@ def eigenmodes(
     surface = as_surface(surface)
     tensors = _as_tensors(surface, diffusivity)
     operators = _make_operators(surface, mask, _as_delaunay(surface, intrinsic_delaunay, tensors))
+    warn_of_seams(operators, "nothing flows between them")
     most = operators.number_of_vertices()
     if most == 0:
         raise ValueError("no triangle of the surface is left; allowed: one or more that are not "

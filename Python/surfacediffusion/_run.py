@@ -39,6 +39,14 @@ def warn(sentences: list[str], category: type[Warning] = SurfaceDiffusionWarning
     warnings.warn("; ".join(sentences), category, stacklevel=level)
 
 
+def warn_of_seams(built: Any, consequence: str) -> None:
+    """A warning if points of the boundary coincide: a surface whose triangles do not share them."""
+    count = built.coincident_points()
+    if count:
+        warn([f"{count} boundary points coincide with others and {consequence} (to join them, number "
+              "points at one place once, as numpy.unique(points, axis=0, return_inverse=True) does)"])
+
+
 def take_old_switch(
     properties: dict[str, Any], function: str, word: str, instead: str, default: bool = False
 ) -> bool:

@@ -110,6 +110,8 @@ def make_files(folder):
         cut("a.vtk", "cut.vtk", 0.8)
         write("grid.vtk", "# vtk DataFile Version 3.0\ngrid\nASCII\nDATASET STRUCTURED_POINTS\n"
                           "DIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n")
+        write("strips.vtk", "# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n"
+                            "0 0 0 1 0 0 0 1 0 1 1 0\nTRIANGLE_STRIPS 1 5\n4 0 1 2 3\n")
         write("grid.vtu", "<?xml version='1.0'?>\n<VTKFile type='UnstructuredGrid'></VTKFile>\n")
 
 
@@ -260,6 +262,7 @@ if HAS_VTK:
         (SMOOTH_IT.format("cut.vtp"), "cut.vtp: damaged VTK XML file"),
         (SMOOTH_IT.format("cut.vtk"), "cut.vtk: damaged VTK legacy file"),
         (SMOOTH_IT.format("grid.vtk"), "grid.vtk: damaged VTK legacy file"),
+        (SMOOTH_IT.format("strips.vtk"), "strips.vtk: triangle strips; allowed: polygons"),
         (SMOOTH_IT.format("grid.vtu"), "grid.vtu: a VTK XML file of another type"),
     ]
 

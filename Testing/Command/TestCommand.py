@@ -638,7 +638,62 @@ class OtherCommands(CommandTest):
         self.assertEqual(read_data("d.vtp").names, ["f", "g", "Texture"])
 
 
+    @unittest.skipUnless(HAS_VTK, "needs vtk")
+    def test_numbers_of_points_are_no_data_unless_they_are_chosen(self):
+        order = np.random.default_rng(5).permutation(N) + 7
+        samples.write_vtk("a.vtp", arrays={"f": NOISE, "ids": order, "vtkGhostType": np.zeros(N, np.uint8)})
+        self.succeed("smooth a.vtp a.vtp 5 out.vtp")
+        before, after = read_data("a.vtp"), read_data("out.vtp")
+        self.assertEqual(before.names, ["f", "ids", "vtkGhostType"])
+        np.testing.assert_array_equal(after.parts[0].values[:, 1:], before.parts[0].values[:, 1:])
+        self.assertLess(after.parts[0].values[:, 0].std(), 0.5 * NOISE.std())
+        self.succeed("smooth a.vtp a.vtp 5 out.vtp --column ids")
+        self.assertLess(read_data("out.vtp").parts[0].values[:, 1].std(), 0.5 * order.std())
+
+    @unittest.skipUnless(HAS_VTK, "needs vtk")
+    def test_a_vector_of_vtk_has_one_label_per_vertex(self):
+        for kind in ("vtp", "vtk"):
+            samples.write_vtk(f"a.{kind}", arrays={"v": COLOURS, "f": SMOOTH})
+            self.succeed(f"segment a.{kind} a.{kind} out.{kind} --regions 3 --column v")
+            data = read_data(f"out.{kind}")
+            labels = data.parts[0].values[:, data.names.index("v")]
+            self.assertEqual(sorted(data.names), ["f", "v"])
+            self.assertEqual(set(labels), {1, 2, 3})
+            np.testing.assert_array_equal(data.parts[0].values[:, data.names.index("f")], SMOOTH)
+
+    @unittest.skipUnless(HAS_VTK, "needs vtk")
+    def test_split_vertices_are_joined_on_request(self):
+        samples.write_vtk("soup.vtp", POINTS[FACES].reshape(-1, 3), np.arange(FACES.size).reshape(-1, 3),
+                          {"f": NOISE[FACES].reshape(-1)})
+        samples.write_vtk("whole.vtp")
+        for line in ("smooth {0} {0} 5 {1}", "denoise {0} {0} {1} --weight 2", "enhance {0} {0} {1}",
+                     "edges {0} {0} {1} --threshold 1", "segment {0} {0} {1} --weight 50"):
+            self.succeed(line.format("whole.vtp", "expected.vtp"))
+            self.succeed(line.format("soup.vtp", "out.vtp") + " --merge")
+            found = read_data("out.vtp").parts[0].values
+            np.testing.assert_allclose(found, read_data("expected.vtp").parts[0].values[FACES.reshape(-1)],
+                                       atol=1e-5)
+
+
 class Reports(CommandTest):
+    @unittest.skipUnless(HAS_VTK, "needs vtk")
+    def test_settings_are_named_as_the_options_that_give_them(self):
+        samples.write_vtk("soup.vtp", POINTS[FACES].reshape(-1, 3), np.arange(FACES.size).reshape(-1, 3),
+                          {"f": np.ones(FACES.size), "noise_level": np.ones(FACES.size)})
+        for command, expected in (
+                (["smooth", "soup.vtp", "soup.vtp", 3, "out.vtp", "--column", "f"],
+                 r"\(to join them, set --merge\)"),
+                (["smooth", "soup.vtp", "soup.vtp", 3000, "out.vtp"], "FWHM is 3000"),
+                (["curvature", "soup.vtp", "out.vtp", "--fwhm", 3000], "set --merge"),
+                (["random-field", "soup.vtp", "out.vtp", "--fwhm", 5], "ParaView's filter Clean joins them"),
+                (["distance", "soup.vtp", "out.vtp", "--from", 0], "ParaView's filter Clean joins them")):
+            code, _, err = run(*command)
+            self.assertEqual(code, 0, err)
+            self.assertRegex(err, expected)
+            self.assertNotRegex(err, "coincident_points|numpy")
+        code, _, err = run("info", "noise_level.npy")
+        self.assertEqual((code, "noise_level.npy" in err), (2, True), err)
+
     def test_json_has_times_widths_totals_and_warnings(self):
         report = self.report("smooth lh.surf.gii lh.func.gii 5 out.func.gii")
         self.assertEqual(set(report["seconds"]), {"read", "compute", "write"})

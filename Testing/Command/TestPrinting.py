@@ -118,7 +118,7 @@ class Printing(unittest.TestCase):
         self.assertLessEqual(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(), 3)
         self.succeed("refine box.ply 0.1 few.stl --maximum-triangles 500",
                      "refinement stopped at edges of [0-9.]+, longer than 0.1, because "
-                     "maximum_number_of_triangles is 500")
+                     "--maximum-triangles is 500")
         self.assertLessEqual(len(read_surface("few.stl").faces), 500)
         for line, pattern in (("box.ply 0 fine.ply", ".*"),
                               ("box.ply 1 fine.off", "fine.off: the name announces no format of surfaces.*"),

@@ -9,6 +9,7 @@ import os
 import sys
 import tempfile
 import unittest
+import warnings
 
 import numpy as np
 
@@ -76,6 +77,26 @@ class Meshes(unittest.TestCase):
             np.testing.assert_array_equal(
                 heat(surface, self.values, fwhm=12),
                 heat(Surface(surface.points, surface.faces), self.values, fwhm=12))
+
+
+class Seams(unittest.TestCase):
+    def test_operators_and_distances_warn_of_triangles_without_common_points(self):
+        whole = sd.sphere(3)
+        soup = Surface(whole.points[whole.triangles].reshape(-1, 3),
+                       np.arange(3 * whole.n_faces).reshape(-1, 3))
+        z = soup.points[:, 2]
+        for call, what in ((lambda s: sd.eigenmodes(s, 2), "nothing flows"),
+                           (lambda s: sd.distance(s, [0]), "no way leads"),
+                           (lambda s: sd.nearest_sources(s, [0, 1]), "no way leads"),
+                           (lambda s: sd.random_field(s, 1, fwhm=0.5), "nothing flows"),
+                           (lambda s: sd.scale_filter(s, s.points[:, 2], 1.0), "nothing flows"),
+                           (lambda s: sd.spectrum(s, s.points[:, 2], [1.0]), "nothing flows")):
+            with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
+                                       f"^{len(z)} boundary points coincide with others and {what}"):
+                call(soup)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                call(whole)
 
 
 class Images(unittest.TestCase):

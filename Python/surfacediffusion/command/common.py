@@ -141,6 +141,7 @@ def data_to_data(parser, text="the result"):
     surface_and_data(parser)
     output(parser, text)
     region_and_columns(parser)
+    merge(parser)
 
 
 def faces(parser):

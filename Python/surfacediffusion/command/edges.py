@@ -155,7 +155,7 @@ def segment(arguments, report):
         found.append({"gap": number(result.gap), "regions": rows})
         return np.repeat(result.values[:, None].astype(float), values.shape[1], axis=1)
 
-    change_data(arguments, report, "Segmentation", compute, columns_of_arrays)
+    change_data(arguments, report, "Segmentation", compute, columns_of_arrays, labels=True)
     for entry in found:
         for row in entry["regions"]:
             report.say(f"region {row['region']}: mean {', '.join(map(number_text, row['mean']))}, area "

@@ -33,6 +33,8 @@ def info(arguments, report):
             data_problem = error
         if surface_problem and data_problem:
             raise surface_problem if "has no surface" not in str(surface_problem) else data_problem
+        if surface_problem and "no surface" not in str(surface_problem):
+            report.warn(str(surface_problem))
         entries.append(entry)
         report.say(_info_line(entry))
 

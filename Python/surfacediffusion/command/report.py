@@ -5,11 +5,41 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import sys
 import time
 import warnings
 
 import numpy as np
+
+#: The option of a command that gives a setting of the package: its destination, and how it is written
+_OPTIONS = {
+    "correlation_length": ("length", "--length"),
+    "edge_threshold": ("threshold", "--threshold"),
+    "edge_width": ("width", "--width"),
+    "feature_size": ("feature_size", "FEATURE_SIZE"),
+    "fidelity_weight": ("weight", "--weight"),
+    "maximum_distance": ("within", "--within"),
+    "maximum_number_of_triangles": ("maximum_triangles", "--maximum-triangles"),
+    "merge_coincident_points": ("merge", "--merge"),
+    "noise_level": ("noise", "--noise"),
+    "number_of_regions": ("regions", "--regions"),
+    "number_of_time_steps": ("steps", "--steps"),
+    "smoothing_length": ("length", "--length"),
+}
+
+
+def in_options(text, arguments):
+    """A sentence of the package in the words of the command line: the options that it has."""
+    text = re.sub(r"to join them, number points.* does\)", "ParaView's filter Clean joins them)", text)
+    # A number that is given turns its choice from the data off.
+    text = re.sub(r"turn off automatic_\w+ and |, with automatic_\w+ off", "", text)
+    text = text.replace("turn automatic_threshold on", "give no edge_threshold")
+    for setting, (destination, option) in _OPTIONS.items():
+        if hasattr(arguments, destination):
+            text = re.sub(rf"(?<![\w./-]){setting}(?![\w./-])", option, text)  # names of files stay
+    text = text.replace("to join them, set merge_coincident_points", "ParaView's filter Clean joins them")
+    return re.sub(r"(^|; )fwhm is", rf"\1{'--fwhm' if hasattr(arguments, 'fwhm') else 'FWHM'} is", text)
 
 
 class Report:
@@ -51,6 +81,7 @@ class Report:
             self.warn(text)
 
     def warn(self, text):
+        text = in_options(text, self.arguments)
         self.warnings.append(text)
         if not self.arguments.quiet:
             print(f"surfacediffusion: warning: {text}", file=sys.stderr)
@@ -95,7 +126,7 @@ class Report:
                 print(line)
 
     def fail(self, error, code):
-        text = " ".join(str(error).split()) or type(error).__name__
+        text = in_options(" ".join(str(error).split()) or type(error).__name__, self.arguments)
         print(f"surfacediffusion: {text}", file=sys.stderr)
         if self.arguments.json:
             self.facts.update(error=text, warnings=self.warnings)

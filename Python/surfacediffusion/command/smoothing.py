@@ -47,6 +47,7 @@ def add_smooth(commands):
     parser.add_argument("--residuals", metavar="FILE", help="the noise for --to-fwhm")
     common.region_and_columns(parser)
     common.faces(parser)
+    common.merge(parser)
     _match_columns(parser)
     voxels = parser.add_mutually_exclusive_group()
     voxels.add_argument("--surface-only", action="store_true",
@@ -158,6 +159,8 @@ def _smooth_file(arguments, report):
     if arguments.to_fwhm:
         if arguments.faces:
             raise inputs.ArgumentProblem("--to-fwhm with --faces; allowed: data at vertices")
+        if arguments.merge:
+            raise inputs.ArgumentProblem("--to-fwhm with --merge; allowed: one of them")
         change_data(arguments, report, "Smoothing", reach, all_columns, content=content,
                     say=lambda surface: "smoothed to " + _width_text(width, surface))
         return

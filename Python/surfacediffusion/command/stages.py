@@ -32,10 +32,11 @@ def read(arguments, missing=None, content=None):
     return surfaces, data, columns, patches
 
 
-def change_data(arguments, report, title, compute, groups, missing=None, say=None, content=None):
+def change_data(arguments, report, title, compute, groups, missing=None, say=None, content=None,
+                labels=False):
     """Applies compute(surface, values, mask=, mask_mode=, progress=) to the groups of columns of each
     surface and writes the result in the format of DATA. say(surface): a part of the summary. missing and
-    content: as of read()."""
+    content: as of read(). labels: whether the result is numbers of labels."""
     check_output_folder(arguments.output)
     with report.timed("read"):
         surfaces, data, columns, patches = read(arguments, missing, content)
@@ -43,6 +44,7 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
         target = _target(data, patches, arguments.output)
     if data.extra:
         report.warn(f"{data.path}: {data.extra}")
+    options = {"merge_coincident_points": True} if getattr(arguments, "merge", False) else {}
     results = []
     total = sum(len(columns) for _ in patches)
     done = 0
@@ -57,11 +59,12 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
                 chosen = slice(None) if len(group) == len(columns) else group
                 with report.timed("compute"):
                     new[:, chosen] = compute(
-                        surface, patch.values[:, chosen], mask=mask, mask_mode="Exclude",
+                        surface, patch.values[:, chosen], mask=mask, mask_mode="Exclude", **options,
                         progress=part_of(progress, done / total, len(group) / total))
                 done += len(group)
             results.append(patch.to_part(new))
             _add_totals(report, data, columns, patch, new, areas)
+    target.labels = labels
     with report.timed("write"):
         target.save(arguments.output, results, columns)
     report.facts.update(data=data.path, output=arguments.output)

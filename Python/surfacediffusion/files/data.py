@@ -58,7 +58,8 @@ class Data:
     parts : list of Part
         One, or one per surface of a CIFTI file.
     labels : bool
-        The values are numbers of labels, which have no mean.
+        The values are numbers of labels, which have no mean. VTK files get one per vertex or face, as a
+        32-bit integer.
     label_names : dict
         {number: name} of the labels of the first column.
     usual : sequence of int
@@ -301,7 +302,7 @@ def _read_vtk(content, on_faces=False):
     attributes = mesh.GetCellData() if on_faces else mesh.GetPointData()
     arrays = vtk_files.arrays_of(attributes)
     active = attributes.GetScalars()
-    usual = {active.GetName()} if active is not None else set(arrays)
+    usual = {active.GetName()} if active is not None else set(arrays) - vtk_files.numbers_of(attributes)
     return _mesh_data(content, mesh, arrays, usual)
 
 
@@ -333,7 +334,11 @@ def _write_ply(data, values, columns):
 def _write_vtk(data, values, columns):
     mesh = data.image[0]
     attributes = mesh.GetCellData() if data.on_faces else mesh.GetPointData()
-    arrays = _changed_arrays(data, values, columns, vtk_files.arrays_of(attributes))
+    if data.labels:
+        arrays = {data.names[column]: np.rint(new).astype(np.int32)
+                  for column, new in zip(columns, np.asarray(values[0]).T)}
+    else:
+        arrays = _changed_arrays(data, values, columns, vtk_files.arrays_of(attributes))
     return vtk_files.write(data.kind, mesh,
                            **{"cell_data" if data.on_faces else "point_data": arrays})
 

@@ -209,6 +209,9 @@ def _write_stl(surface, points):
 
 def _read_vtk(content):
     mesh = vtk_files.read(content)
+    if mesh.GetNumberOfStrips():
+        raise content.error("triangle strips; allowed: polygons, which ParaView's filter Triangulate makes of "
+                            "strips")
     points, faces = vtk_files.points_and_faces(mesh)
     return SurfaceFile(content.path, content.kind, points, faces, image=mesh)
 

@@ -101,8 +101,6 @@ def points_and_faces(mesh):
 
     if mesh.GetNumberOfPoints() == 0:
         return np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
-    if mesh.GetNumberOfStrips():
-        raise ValueError("triangle strips; allowed: polygons")
     points = vtk_to_numpy(mesh.GetPoints().GetData())
     polygons = mesh.GetPolys()
     offsets = vtk_to_numpy(polygons.GetOffsetsArray())
@@ -119,6 +117,20 @@ def arrays_of(data):
     arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
     return {array.GetName() or f"array{i}": vtk_to_numpy(array)
             for i, array in enumerate(arrays) if array is not None}
+
+
+def numbers_of(data):
+    """The names of arrays that number or mark points or cells: ids, whole numbers one after another in
+    any order, and those of VTK itself."""
+    ids = [array.GetName() for array in (data.GetGlobalIds(), data.GetPedigreeIds()) if array is not None]
+
+    def numbers(name, values):
+        return name.startswith("vtk") or (
+            values.dtype.kind in "iu" and values.ndim == 1 and len(values) > 1
+            and int(values.max()) - int(values.min()) == len(values) - 1
+            and len(np.unique(values)) == len(values))
+
+    return {*ids, *(name for name, values in arrays_of(data).items() if numbers(name, values))}
 
 
 def normals_of(mesh, of_points, of_faces):
