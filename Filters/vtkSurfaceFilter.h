@@ -88,6 +88,20 @@ class vtkPolyData;
     this->Set##name(false);                                                                        \
   }
 
+// Accessors of a std::string member by char pointers. The macro of VTK 9.1 takes every call for a
+// change.
+#define SURFACEDIFFUSION_NAME(name)                                                                \
+  virtual void Set##name(const char* text)                                                         \
+  {                                                                                                \
+    const std::string given = text ? text : "";                                                    \
+    if (this->name != given)                                                                       \
+    {                                                                                              \
+      this->name = given;                                                                          \
+      this->Modified();                                                                            \
+    }                                                                                              \
+  }                                                                                                \
+  vtkGetCharFromStdStringMacro(name)
+
 // The same for a choice, which is the index of a word: one of the enumerators of the class.
 #define SURFACEDIFFUSION_CHOICE(name)                                                              \
   SURFACEDIFFUSION_PROPERTY(name, int)                                                             \
@@ -191,8 +205,7 @@ public:
    * subclass's own default. A result with the name of the array that it is computed from replaces
    * this array. If results replace other arrays of the input, a warning names these.
    */
-  vtkSetStdStringFromCharMacro(ResultArrayName);
-  vtkGetCharFromStdStringMacro(ResultArrayName);
+  SURFACEDIFFUSION_NAME(ResultArrayName);
   ///@}
 
   /**

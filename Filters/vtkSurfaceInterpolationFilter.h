@@ -109,10 +109,8 @@ public:
    * components, NaN: unknown (default: empty, their active scalars), and the weights w, one
    * component, 0 or more, 0: unknown (default: empty, 1 everywhere).
    */
-  vtkSetStdStringFromCharMacro(PointValueArray);
-  vtkGetCharFromStdStringMacro(PointValueArray);
-  vtkSetStdStringFromCharMacro(PointWeightArray);
-  vtkGetCharFromStdStringMacro(PointWeightArray);
+  SURFACEDIFFUSION_NAME(PointValueArray);
+  SURFACEDIFFUSION_NAME(PointWeightArray);
   ///@}
 
   /**

@@ -138,6 +138,9 @@ TEST(RandomRuns, StayAsTheyWereMended)
     // a needle on which the minimiser left the range of numbers, and its gap counted as zero
     "f7fc3aff011f0000180001dc004a11f7fc31ef01ff0011f7fc31ef01ff00b0180001b1004a11001ec700af8f"
     "89b10049113aff011f0000180001b1004a11f7001ec700af8f8900130013008f0000003b1a1221",
+    // one triangle without energy, whose round-off made the smoothing negative
+    "0000000025000300fffcfd2f2ffbfb2a3d0000000000fefe0bff00000004070000000000ff402ffbbfff2f12e23d"
+    "3d3d3dfbfb0000003d3d3d010bff8c00d5",
   };
   for (const std::string& digits : found)
   {

@@ -30,7 +30,9 @@ struct SmoothInterpolation::Work
   double LargestSmoothing() const
   {
     constexpr double resolved = 1e-13;
-    return this->Data.Rows.Weights.sum() / (resolved * this->Energy.Matrix().diagonal().sum());
+    // Of an energy that no function has, round-off of any sign is left.
+    const double energy = this->Energy.Matrix().diagonal().cwiseAbs().sum();
+    return this->Data.Rows.Weights.sum() / (resolved * energy);
   }
 
   /// The largest magnitude of the values of a column.
