@@ -135,8 +135,8 @@ public:
   SURFACEDIFFUSION_PROPERTY(Smoothing, double);
 
   /**
-   * 1/kappa, the distance beyond which u returns to the mean of the values, in coordinate units, 0
-   * or more. 0 (default): infinite.
+   * 1/kappa, the distance beyond which u returns to the mean of the values of its connected
+   * component, in coordinate units, 0 or more. 0 (default): infinite.
    */
   SURFACEDIFFUSION_PROPERTY(CorrelationLength, double);
 

@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/DirectionFieldRun.h"
 
+#include "Core/Geometry/OrientedNormals.h"
+#include "Core/Surface/TangentVectors.h"
+
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <sstream>
 
@@ -76,9 +81,40 @@ void DirectionFieldRun::Update(
   }
   TangentVectors rotated = this->Field;
   RotateLines(rotated, RadiansFromDegrees(settings.Angle), this->Parallel);
+  this->Turned = 0;
+  constexpr double rightAngle = 90.0; // of lines both senses of it are the same
+  if (std::fmod(settings.Angle, rightAngle) != 0.0)
+  {
+    this->RotateTurnedTriangles(RadiansFromDegrees(settings.Angle), rotated);
+  }
   this->Results = { { "Direction", Place::PerTriangle, OutputType::Double, rotated,
     Role::Vectors } };
   this->Results.front().IsResult = true;
+}
+
+/// The sense of an angle is that around the normals of the whole surface.
+void DirectionFieldRun::RotateTurnedTriangles(double angle, TangentVectors& lines)
+{
+  const Surface& surface = *this->Domain;
+  const TriangleMesh& mesh = surface.Mesh();
+  const OrientedNormals normals =
+    FindOrientedNormals(mesh, VertexPositions(surface), this->Parallel);
+  this->Turned = normals.TurnedTriangles;
+  if (this->Turned == 0)
+  {
+    return;
+  }
+  TangentVectors opposite = this->Field;
+  RotateLines(opposite, -angle, this->Parallel);
+  const Triangles triangles = surface.MakeTriangles();
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto axes = TriangleAxes(mesh, surface.Points(), triangles, t);
+    if (axes.col(0).cross(axes.col(1)).dot(normals.OfTriangles.row(t)) < 0.0)
+    {
+      lines.row(t) = opposite.row(t);
+    }
+  }
 }
 
 void DirectionFieldRun::MakeField(
@@ -106,6 +142,7 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
   std::vector<Warning> warnings;
   std::ostringstream text;
   this->AppendMissedResidual(this->Report.MissedResidual, warnings);
+  this->AppendTurnedTriangles(this->Turned, warnings);
   if (this->Report.UnsettledChange > 0.0)
   {
     text << "the search for the smoothest field ended at its largest number of steps; the last "

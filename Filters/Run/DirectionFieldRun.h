@@ -43,7 +43,10 @@ private:
   void MakeField(const BlockInput& input, const DirectionFieldSettings& settings,
     const ProgressMonitor& progress);
 
+  void RotateTurnedTriangles(double angle, TangentVectors& lines);
+
   TangentVectors Field; ///< before the rotation by Angle
+  Index Turned = 0; ///< triangles with another orientation than most, if that matters
   LineFieldReport Report;
 };
 

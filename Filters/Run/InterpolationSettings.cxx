@@ -6,6 +6,7 @@
 #include "Core/Operators/CotanWeights.h"
 #include "Run/ModelInputs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -71,6 +72,33 @@ void WarnOfValues(
   }
 }
 
+/// u: the result, in array units 1/unit. Values at more than three places of one triangle contradict
+/// each other.
+void WarnOfMisfit(
+  const SmoothInterpolation::Result& found, const Values& u, double unit, RunResult& result)
+{
+  constexpr double roundOff = 1e-6; // of the range
+  for (Eigen::Index k = 0; k < u.cols(); ++k)
+  {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const double value : u.col(k))
+    {
+      low = std::isnan(value) ? low : std::min(low, value);
+      high = std::isnan(value) ? high : std::max(high, value);
+    }
+    const double misfit = found.Columns[static_cast<std::size_t>(k)].Residual;
+    if (misfit > roundOff * (high - low))
+    {
+      result.WarnOnce(Sentence("the values do not hold exactly but to ")
+        << misfit * unit << " (root mean square): some triangles have more values than corners (to "
+        << "smooth them, turn " << Word::Setting("Exact")
+        << " off; to hold them, refine the surface)");
+      return;
+    }
+  }
+}
+
 void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
 {
   WarnOf(found.ContradictingPlaces, " place has different values: their weighted mean counts",
@@ -115,8 +143,8 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
   this->RunSettings::Visit(visitor);
   visitor.Number({ "CorrelationLength", "coordinates",
                    "1/kappa, the distance beyond which the result returns to the mean of the "
-                   "values, in the unit of the coordinates, 0 or more. 0: infinite, the result "
-                   "continues smoothly." },
+                   "values of its connected component, in the unit of the coordinates, 0 or more. "
+                   "0: infinite, the result continues smoothly." },
     this->CorrelationLength, SettingRange::NonNegative());
   visitor.Switch({ "Exact", "",
                    "On: the result has the known values exactly. Off: it is smoothed, as noisy "
@@ -260,6 +288,10 @@ std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResu
   const SmoothInterpolation::Result& found = model.Found();
   WarnOfFit(found, result);
   const double unit = state.Units.ValueUnit;
+  if (this->Exact && found.RangeIsOptimal)
+  {
+    WarnOfMisfit(found, model.State(), unit, result);
+  }
   const Eigen::RowVectorXd none =
     Eigen::RowVectorXd::Constant(model.State().cols(), std::numeric_limits<double>::quiet_NaN());
   std::vector<Output> outputs;

@@ -383,6 +383,47 @@ TEST(Smoothing, StandardErrorsContainThatOfTheMean)
   }
 }
 
+/// Far from the values, beside those of another component.
+TEST(Smoothing, EveryComponentReturnsToItsOwnMean)
+{
+  const Surface s = Joined(Plate(20, 1.0), Moved(Plate(12, 1.0), { 5.0, 0.0, 0.0 }));
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const auto isFirst = [&](Index i) { return s.Vertices(mesh.InputVertex()[i], 0) < 2.5; };
+  Values field(mesh.NumberOfVertices(), 1);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    const double y = s.Vertices(mesh.InputVertex()[i], 1);
+    field(i, 0) = isFirst(i) ? 100.0 + y : -y;
+  }
+  const Vector y = s.Vertices.col(1);
+  const auto data = ValuesAt(mesh, field, [&](Index i) { return y[i] < y.minCoeff() + 0.2; });
+  for (const Choice choice : { Choice::Exact, Choice::Given })
+  {
+    for (const bool keepRange : { false, true })
+    {
+      Interpolation::Settings settings = InterpolationSettings(choice, 1e-6);
+      settings.Kappa = 25.0 * mesh.LengthUnit();
+      settings.KeepRange = keepRange;
+      const Interpolation::Result result = Interpolate(assembler, data, settings);
+      double means[2] = { 0.0, 0.0 };
+      double counts[2] = { 0.0, 0.0 };
+      for (const SurfacePoint& place : data.Places)
+      {
+        means[isFirst(place.Vertices[0])] += field(place.Vertices[0], 0);
+        counts[isFirst(place.Vertices[0])] += 1.0;
+      }
+      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      {
+        if (y[mesh.InputVertex()[i]] > y.maxCoeff() - 0.1)
+        {
+          EXPECT_NEAR(result.U(i, 0), means[isFirst(i)] / counts[isFirst(i)], 1e-3);
+        }
+      }
+    }
+  }
+}
+
 TEST(Smoothing, TendsToTheExactValuesAndToTheirMean)
 {
   const Surface s = Icosphere(3);

@@ -141,6 +141,9 @@ TEST(RandomRuns, StayAsTheyWereMended)
     // one triangle without energy, whose round-off made the smoothing negative
     "0000000025000300fffcfd2f2ffbfb2a3d0000000000fefe0bff00000004070000000000ff402ffbbfff2f12e23d"
     "3d3d3dfbfb0000003d3d3d010bff8c00d5",
+    // triangles that cover each other, which shrank to a point when their mesh was denoised
+    "2f010200080000100000000022001a32ffcc08ff08ccce14c4ffccdffffc0032d9ffffff000000000000003affff"
+    "ff051b411526265d5d5d5d26cc41322b",
   };
   for (const std::string& digits : found)
   {

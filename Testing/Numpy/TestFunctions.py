@@ -211,6 +211,23 @@ class Surfaces(unittest.TestCase):
         given = sd.Surface(surface.points, surface.faces, areas=2 * areas)
         np.testing.assert_array_equal(given.vertex_areas, 2 * areas)
 
+    def test_angles_of_directions_have_the_sense_of_the_whole_surface(self):
+        x, y = np.meshgrid(np.arange(9.0), np.arange(7.0))
+        points = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+        corner = (np.arange(6)[:, None] * 9 + np.arange(8)).ravel()
+        faces = np.concatenate([np.column_stack([corner, corner + 1, corner + 10]),
+                                np.column_stack([corner, corner + 10, corner + 9])])
+        faces[::3] = faces[::3, ::-1]
+        hints = np.tile([1.0, 0.0, 0.0], (len(points), 1))
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "32 triangles .* count as turned"):
+            found = sd.direction_field((points, faces), hints, method="Hints", angle=30.0)
+        expected = np.array([np.cos(np.pi / 6), np.sin(np.pi / 6), 0.0])
+        np.testing.assert_allclose(np.abs(np.asarray(found) @ expected), 1.0, atol=1e-9)
+        for angle in (0.0, 90.0, -180.0):  # of lines: the sense does not matter
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                sd.direction_field((points, faces), hints, method="Hints", angle=angle)
+
     def test_principal_directions_of_a_cylinder_follow_its_axis(self):
         angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 40, endpoint=False),
                                     np.linspace(0, 4, 30), indexing="ij")

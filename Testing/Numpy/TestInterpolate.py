@@ -239,5 +239,19 @@ class BadValues(unittest.TestCase):
             self.assertNotIn("\n", str(caught.exception))
 
 
+class Exact(unittest.TestCase):
+    def test_more_values_than_corners_of_a_triangle_are_a_warning(self):
+        surface = sd.sphere(2)
+        corners = surface.points[surface.triangles[0]]
+        shares = np.random.default_rng(0).dirichlet(np.ones(3), 6)
+        values = np.arange(6.0) ** 2
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
+                                   "do not hold exactly but to .*more values than corners.*turn exact off"):
+            sd.interpolate(surface, values, shares @ corners, exact=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            sd.interpolate(surface, values[:3], shares[:3] @ corners, exact=True)
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=2, argv=sys.argv)

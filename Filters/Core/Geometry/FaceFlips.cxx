@@ -21,6 +21,8 @@ constexpr int MaximumNumberOfSweeps = 20;
 constexpr int NumberOfSteps = 4;
 /// t of TurnFlippedFaces().
 constexpr double Smoothness = 0.05;
+/// The least length of edges at a vertex that moves, as a share of that in the mesh.
+constexpr double LeastLength = 1e-3;
 
 /// Twice the area of the triangle with its vertex `vertex` at `place`, as seen along its normal.
 double Seen(const TriangleMesh& mesh, const Points& normals, const Points& points, Index corner,
@@ -75,8 +77,9 @@ Eigen::RowVector3d BestPlace(
   return own + matrix.ldlt().solve(right.transpose()).transpose();
 }
 
-/// The median length of the edges at a vertex.
-double TypicalEdge(const TriangleMesh& mesh, const Points& points, Index vertex)
+/// The median length of the edges at a vertex, with the vertex at `place`.
+double TypicalEdge(
+  const TriangleMesh& mesh, const Points& points, Index vertex, const Eigen::RowVector3d& place)
 {
   std::vector<double> lengths;
   for (Index k = mesh.VertexCornersBegin()[vertex]; k < mesh.VertexCornersBegin()[vertex + 1]; ++k)
@@ -84,7 +87,22 @@ double TypicalEdge(const TriangleMesh& mesh, const Points& points, Index vertex)
     for (const int step : { 1, 2 })
     {
       const Index other = mesh.OtherCorner(mesh.VertexCorners()[k], step);
-      lengths.push_back((points.row(other) - points.row(vertex)).norm());
+      lengths.push_back((points.row(other) - place).norm());
+    }
+  }
+  return QuantileOf(lengths, 0.5);
+}
+
+/// The same in the mesh itself.
+double TypicalEdgeOfMesh(const TriangleMesh& mesh, Index vertex)
+{
+  std::vector<double> lengths;
+  for (Index k = mesh.VertexCornersBegin()[vertex]; k < mesh.VertexCornersBegin()[vertex + 1]; ++k)
+  {
+    const Index corner = mesh.VertexCorners()[k];
+    for (const int step : { 1, 2 })
+    {
+      lengths.push_back(mesh.Shapes()[corner / 3].EdgeLength((corner + step) % 3));
     }
   }
   return QuantileOf(lengths, 0.5);
@@ -100,11 +118,13 @@ bool MoveVertex(const TriangleMesh& mesh, const Points& normals, Points& points,
     return false;
   }
   Eigen::RowVector3d step = BestPlace(mesh, normals, points, vertex) - own;
-  step *= std::min(1.0, TypicalEdge(mesh, points, vertex) / step.norm());
+  step *= std::min(1.0, TypicalEdge(mesh, points, vertex, own) / step.norm());
+  const double least = LeastLength * TypicalEdgeOfMesh(mesh, vertex);
   for (int k = 0; k < NumberOfSteps; ++k, step *= 0.5)
   {
     const Star after = MeasureStar(mesh, normals, points, vertex, own + step);
-    if (after.Least > before.Least && after.Flipped <= before.Flipped)
+    if (after.Least > before.Least && after.Flipped <= before.Flipped &&
+      TypicalEdge(mesh, points, vertex, own + step) >= least)
     {
       points.row(vertex) = own + step;
       return true;

@@ -21,8 +21,10 @@ Index CountFlippedFaces(const TriangleMesh& mesh, const Points& normals, const P
 ///
 /// over x_i, by at most the whole step and the median length of the edges at the vertex, and by the
 /// largest of the steps 1, 1/2, 1/4, 1/8 of that which raises the least height of the triangles
-/// around it and flips no more of them. Vertices that no such step helps stay. Hence the number of
-/// flipped triangles never grows. The order is that of the vertices.
+/// around it, flips no more of them, and leaves the median length of the edges at the vertex above a
+/// thousandth of that in the mesh: where orientations contradict each other, surfaces would shrink
+/// to points. Vertices that no such step helps stay. Hence the number of flipped triangles never grows.
+/// The order is that of the vertices.
 ///
 /// fixed: per vertex, nonzero for vertices that stay; may be empty.
 void TurnFlippedFaces(const TriangleMesh& mesh, const Points& normals,

@@ -38,8 +38,7 @@ void SmoothInterpolation::FitExactly(
     const Vector variances = work.Fit.InverseDiagonal(progress.Part(0.8, 0.95)) +
       this->VarianceOfMean(work, held, true, progress.Part(0.95, 0.95)); // without bounds
     const Vector energies = work.Energy.Squares(u);
-    const Index means = this->Options.Kappa > 0.0 ? 1 : work.Parts; // estimated with the field
-    const double free = std::max<double>(1.0, rows.Count() - means);
+    const double free = std::max<double>(1.0, rows.Count() - work.Parts);
     for (Eigen::Index c = 0; c < columns; ++c)
     {
       const double scale = energies[c] / free;
@@ -49,7 +48,7 @@ void SmoothInterpolation::FitExactly(
       }
       // The energy of values that a function without energy reaches is round-off.
       constexpr double resolved = 1e-12;
-      const bool isKnown = rows.Count() > means &&
+      const bool isKnown = rows.Count() > work.Parts &&
         (held.all() || result.Error.col(c).maxCoeff() > resolved * work.SizeOf(c));
       if (!isKnown)
       {

@@ -2,15 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/RangeConstraint.h"
 
+#include <utility>
+
 namespace SurfaceDiffusion
 {
 
-RangeConstraint::RangeConstraint(const ScatteredValues& data, Eigen::Index column, bool isExact)
+RangeConstraint::RangeConstraint(
+  const ScatteredValues& data, Eigen::Index column, bool isExact, Vector low, Vector high)
   : Data(data)
   , Column(column)
   , IsExact(isExact)
-  , Low(data.Given.col(column).minCoeff())
-  , High(data.Given.col(column).maxCoeff())
+  , Low(std::move(low))
+  , High(std::move(high))
 {
 }
 
@@ -23,11 +26,12 @@ bool RangeConstraint::Force(
   for (Index i = 0; i < this->Data.Count() && this->IsExact; ++i)
   {
     const double value = this->Data.Given(i, this->Column);
-    if (value > this->Low && value < this->High)
+    const Index first = this->Data.Places[i].Vertices[0];
+    if (value > this->Low[first] && value < this->High[first])
     {
       continue;
     }
-    const Side bound = value == this->Low ? Below : Above;
+    const Side bound = value == this->Low[first] ? Below : Above;
     for (std::size_t a = 0; a < 3; ++a)
     {
       const Index vertex = this->Data.Places[i].Vertices[a];
@@ -49,7 +53,7 @@ bool RangeConstraint::Impose(SmoothFit& fit, const Prepare& prepare, const Flags
   // only, after so many steps.
   constexpr int mostWithRelease = 300;
   constexpr int most = 350;
-  const double resolved = 1e-13 * (this->High - this->Low);
+  const double resolved = 1e-13 * (this->High[0] - this->Low[0]);
   const auto n = static_cast<Index>(u.rows());
   std::vector<Side> active(static_cast<std::size_t>(n), Inside);
   std::vector<char> isForced(static_cast<std::size_t>(n), 0);
@@ -76,9 +80,9 @@ bool RangeConstraint::Impose(SmoothFit& fit, const Prepare& prepare, const Flags
       Side next = active[i];
       if (next == Inside)
       {
-        next = u(i, 0) < this->Low - resolved ? Below
-          : u(i, 0) > this->High + resolved   ? Above
-                                              : Inside;
+        next = u(i, 0) < this->Low[i] - resolved ? Below
+          : u(i, 0) > this->High[i] + resolved   ? Above
+                                                 : Inside;
         isFeasible = isFeasible && next == Inside;
       }
       else if (iteration < mostWithRelease && next * derivative(i, 0) > 0.0)
@@ -102,7 +106,7 @@ bool RangeConstraint::Impose(SmoothFit& fit, const Prepare& prepare, const Flags
       if (active[i] != Inside)
       {
         all[i] = true;
-        u(i, 0) = active[i] == Below ? this->Low : this->High;
+        u(i, 0) = active[i] == Below ? this->Low[i] : this->High[i];
       }
     }
     const double done = static_cast<double>(iteration) / most;

@@ -18,8 +18,9 @@ namespace SurfaceDiffusion
 class RangeConstraint
 {
 public:
-  /// data: must outlive it. isExact: the values hold.
-  RangeConstraint(const ScatteredValues& data, Eigen::Index column, bool isExact);
+  /// data: must outlive it. isExact: the values hold. low, high: the bounds, per vertex.
+  RangeConstraint(
+    const ScatteredValues& data, Eigen::Index column, bool isExact, Vector low, Vector high);
 
   /// Prepares the fit with more vertices held.
   using Prepare = std::function<void(const Flags&, const ProgressMonitor&)>;
@@ -44,7 +45,7 @@ private:
   const ScatteredValues& Data;
   const Eigen::Index Column;
   const bool IsExact;
-  double Low, High;
+  const Vector Low, High;
 };
 
 } // namespace SurfaceDiffusion

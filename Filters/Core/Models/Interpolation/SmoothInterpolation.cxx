@@ -59,31 +59,37 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   result.ContradictingPlaces = work.Data.Contradicting;
   result.Columns.resize(static_cast<std::size_t>(columns));
 
-  // Values are measured from their mean: the errors of a solve are relative to the contrast then.
-  work.Origin = Eigen::RowVectorXd::Zero(columns);
-  const double allWeights = rows.Weights.sum();
-  for (Index i = 0; i < rows.Count(); ++i)
-  {
-    work.Origin += rows.Weights[i] / allWeights * rows.Given.row(i);
-  }
-  rows.Given.rowwise() -= work.Origin;
-  std::vector<char> isKnown(static_cast<std::size_t>(mesh.NumberOfComponents()), 0);
-  std::vector<Index> component(n);
+  // Values are measured from the mean of their component: the errors of a solve are relative to the
+  // contrast then.
+  work.Component.resize(n);
   for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
-    std::fill(component.begin() + mesh.ComponentsBegin()[c],
-      component.begin() + mesh.ComponentsBegin()[c + 1], c);
+    std::fill(work.Component.begin() + mesh.ComponentsBegin()[c],
+      work.Component.begin() + mesh.ComponentsBegin()[c + 1], c);
   }
-  for (const SurfacePoint& place : rows.Places)
+  work.Weights = Vector::Zero(mesh.NumberOfComponents());
+  for (Index i = 0; i < rows.Count(); ++i)
   {
-    isKnown[component[place.Vertices[0]]] = 1;
+    work.Weights[work.ComponentOf(i)] += rows.Weights[i];
+  }
+  work.Lowest = rows.Given.colwise().minCoeff();
+  work.Highest = rows.Given.colwise().maxCoeff();
+  work.Origin = Values::Zero(mesh.NumberOfComponents(), columns);
+  for (Index i = 0; i < rows.Count(); ++i)
+  {
+    const Index c = work.ComponentOf(i);
+    work.Origin.row(c) += rows.Weights[i] / work.Weights[c] * rows.Given.row(i);
+  }
+  for (Index i = 0; i < rows.Count(); ++i)
+  {
+    rows.Given.row(i) -= work.Origin.row(work.ComponentOf(i));
   }
   work.Open = Flags::Constant(n, false);
   for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
     const Index begin = mesh.ComponentsBegin()[c];
     const Index size = mesh.ComponentsBegin()[c + 1] - begin;
-    if (isKnown[c])
+    if (work.Weights[c] > 0.0)
     {
       ++work.Parts;
       work.Area += mesh.ControlAreas().segment(begin, size).sum();
@@ -109,7 +115,10 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   {
     this->FitSmoothly(work, result, progress);
   }
-  result.U.rowwise() += work.Origin;
+  for (Index i = 0; i < n; ++i)
+  {
+    result.U.row(i) += work.Origin.row(work.Component[i]);
+  }
   for (Eigen::Index c = 0; c < columns && this->Options.KeepRange; ++c)
   {
     // To the last bit, which the origin rounds
@@ -135,7 +144,16 @@ void SmoothInterpolation::KeepInRange(Work& work, Result& result, Eigen::Index c
   const Flags& held, Values& u, Values& forces, const ProgressMonitor& progress) const
 {
   const double mu = work.Fit.GetSmoothing();
-  const RangeConstraint range(work.Data.Rows, column, this->Options.Smoothing == Choice::Exact);
+  const auto n = static_cast<Index>(u.rows());
+  Vector low(n), high(n);
+  for (Index i = 0; i < n; ++i)
+  {
+    const double origin = work.Origin(work.Component[i], column);
+    low[i] = work.Lowest[column] - origin;
+    high[i] = work.Highest[column] - origin;
+  }
+  const RangeConstraint range(work.Data.Rows, column, this->Options.Smoothing == Choice::Exact,
+    std::move(low), std::move(high));
   const auto prepare = [&](const Flags& all, const ProgressMonitor& part)
   { this->Prepare(work, result, mu, all, part); };
   const bool isOptimal = range.Impose(work.Fit, prepare, held, u, forces, progress);
@@ -165,7 +183,7 @@ void SmoothInterpolation::Prepare(
   if (pivots.Negative > 0 && isFree && !result.DropsNegativeCurvature)
   {
     work.Energy.DropNegativeCurvature();
-    work.EnergyOfMean = -1.0;
+    work.EnergyOfMean.resize(0);
     result.DropsNegativeCurvature = true;
     pivots = work.Fit.Prepare(mu, held, isExact, progress);
   }
@@ -174,7 +192,7 @@ void SmoothInterpolation::Prepare(
     // Enough to be resolved, and little beside the energy.
     const double n = static_cast<double>(held.size());
     work.Energy.AddTension(std::max(1e-6, 1e-12 * n * n) / work.Area);
-    work.EnergyOfMean = -1.0;
+    work.EnergyOfMean.resize(0);
     result.IsFlattest = true;
     pivots = work.Fit.Prepare(mu, held, isExact, progress);
   }
@@ -195,24 +213,40 @@ Vector SmoothInterpolation::VarianceOfMean(
   {
     return Vector::Zero(n);
   }
-  const double allWeights = rows.Weights.sum();
-  if (work.EnergyOfMean < 0.0)
+  const Index parts = this->Assembly->Mesh().NumberOfComponents();
+  if (work.EnergyOfMean.size() == 0)
   {
     ScatteredValues weightless = rows;
     weightless.Weights.setZero();
     SmoothFit prior(work.Energy, weightless, Work::IsRegularMesh(*this->Assembly), this->Parallel);
     const PivotCounts pivots = prior.Prepare(1.0, work.Open, false, progress);
-    const Values weights = rows.Weights / allWeights;
+    Values weights = rows.Weights;
+    for (Index i = 0; i < rows.Count(); ++i)
+    {
+      weights(i, 0) /= work.Weights[work.ComponentOf(i)];
+    }
     // Constants that have no energy within round-off leave no error: all of it is in the fit.
-    work.EnergyOfMean = pivots.Open + pivots.Negative > 0
-      ? 0.0
-      : weights.col(0).dot(prior.InverseAtPoints(weights).col(0));
+    work.EnergyOfMean = Vector::Zero(parts);
+    if (pivots.Open + pivots.Negative == 0)
+    {
+      const Values covariances = prior.InverseAtPoints(weights);
+      for (Index i = 0; i < rows.Count(); ++i)
+      {
+        work.EnergyOfMean[work.ComponentOf(i)] += weights(i, 0) * covariances(i, 0);
+      }
+    }
   }
   Values ones = held.select(Values::Ones(n, 1), 0.0);
   work.Fit.Solve(Values::Ones(rows.Count(), 1), ones);
-  const double ofNoise = isExact ? 0.0 : 1.0 / allWeights;
-  const double variance = ofNoise + work.EnergyOfMean / work.Fit.GetSmoothing();
-  return variance * (1.0 - ones.col(0).array()).square();
+  Vector variances(n);
+  for (Index i = 0; i < n; ++i)
+  {
+    const Index c = work.Component[i];
+    const double ofNoise = isExact ? 0.0 : 1.0 / work.Weights[c];
+    const double variance = ofNoise + work.EnergyOfMean[c] / work.Fit.GetSmoothing();
+    variances[i] = variance * std::pow(1.0 - ones(i, 0), 2);
+  }
+  return variances;
 }
 
 void SmoothInterpolation::FitSmoothly(

@@ -20,12 +20,12 @@ namespace SurfaceDiffusion
 /// every value as the mesh becomes finer. The energy of second derivatives bounds values at points,
 /// so that this interpolant converges.
 ///
-/// With kappa = 0 constants have no energy. With kappa > 0 values are measured from their weighted
-/// mean, to which u returns beyond the distance 1/kappa from the values.
+/// With kappa = 0 constants have no energy. With kappa > 0 the values of each connected component are
+/// measured from their weighted mean, to which u returns beyond the distance 1/kappa from them.
 ///
 /// u is also the mean of a Gaussian field with the precision (mu Q + B^T W B) / s^2, where s is the
 /// standard deviation of values with weight 1: from it follow standard errors. With kappa > 0 the
-/// mean m = w^T d, from which values are measured, adds
+/// mean m = w^T d of a component, from which its values are measured, adds
 ///   (1 - (A 1)_i)^2 Var(m),  Var(m) / s^2 = w^T (W^-1 + B (mu Q)^-1 B^T) w,
 /// with the fit A 1 of values that are all 1. The errors of both parts do not correlate, since the
 /// fit is the best linear predictor.
@@ -71,8 +71,7 @@ public:
   {
     Values U; ///< n x k; NaN in components without values
     /// The standard error, n x k; no rows unless asked for. NaN in columns whose values do not show
-    /// a deviation: one (with kappa = 0: per component), all on a function without energy, or all
-    /// reached by the fit.
+    /// a deviation: one per component, all on a function without energy, or all reached by the fit.
     Values Error;
     bool HasUnknownError = false; ///< in a column
     std::vector<Column> Columns;

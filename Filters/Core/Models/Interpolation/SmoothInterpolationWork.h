@@ -6,6 +6,10 @@
 #include "Core/Models/Interpolation/SmoothInterpolation.h"
 #include "Core/Solvers/NestedDissection.h"
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 namespace SurfaceDiffusion
 {
 
@@ -35,10 +39,22 @@ struct SmoothInterpolation::Work
     return this->Data.Rows.Weights.sum() / (resolved * energy);
   }
 
+  /// The component of a value.
+  Index ComponentOf(Index row) const
+  {
+    return this->Component[this->Data.Rows.Places[row].Vertices[0]];
+  }
+
   /// The largest magnitude of the values of a column.
   double SizeOf(Eigen::Index column) const
   {
-    return (this->Data.Rows.Given.col(column).array() + this->Origin[column]).abs().maxCoeff();
+    double size = 0.0;
+    for (Index i = 0; i < this->Data.Rows.Count(); ++i)
+    {
+      const double given = this->Data.Rows.Given(i, column);
+      size = std::max(size, std::abs(given + this->Origin(this->ComponentOf(i), column)));
+    }
+    return size;
   }
 
   MergedValues Data;
@@ -47,10 +63,13 @@ struct SmoothInterpolation::Work
   Flags Open; ///< vertices of components without values, which are held at zero
   Index Parts = 0; ///< components with values
   double Area = 0.0; ///< of these components
-  Eigen::RowVectorXd Origin; ///< from which values are measured
+  std::vector<Index> Component; ///< of each vertex
+  Values Origin; ///< per component, from which values are measured
+  Vector Weights; ///< of all values of a component
+  Eigen::RowVectorXd Lowest, Highest; ///< of the values of a column
   Values Start;
-  /// w^T B Q^-1 B^T w for the weights w of the mean of the values; below 0: not known
-  double EnergyOfMean = -1.0;
+  /// w^T B Q^-1 B^T w per component, for the weights w of the mean of its values; no entries: not known
+  Vector EnergyOfMean;
 };
 
 } // namespace SurfaceDiffusion
