@@ -30,8 +30,8 @@ void ColorSettings::Visit(SettingVisitor& visitor)
   visitor.Switch({ "LinearLight", "",
                    "Decode unsigned char colours from sRGB to linear light, and encode the "
                    "result. Results below 0 and above 255 become 0 and 255. It has no effect on "
-                   "data of other types. Noise is usually of equal strength in the bytes: off "
-                   "then gives the better result." },
+                   "data of other types, nor with the ColorModel RGB. Noise is usually of equal "
+                   "strength in the bytes: off then gives the better result." },
     this->LinearLight);
 }
 
