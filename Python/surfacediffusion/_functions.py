@@ -741,8 +741,9 @@ def segment_with_outputs(
     """The result of segment(), and all outputs. dtype: of the values; None: that of the data."""
     surface = as_surface(surface)
     if (values is None) == (terms is None):
+        alone = ", for seeds alone terms of 0, one column per region" if seeds is not None else ""
         raise ValueError("values and terms are " + ("both" if values is not None else "not") +
-                         " given; allowed: one of them")
+                         f" given; allowed: one of them{alone}")
     name = "values" if terms is None else "terms"
     array = values if terms is None else terms
     data, on_faces = _take(name, array, surface, on_faces)
