@@ -233,7 +233,8 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
     add(areTimes ? "ArrivalTimeGradient" : "DistanceGradient", OutputType::Double,
       this->FindGradient(arrival.Times, triangles), 0.0);
   }
-  this->AllAreSources = !areTimes && (this->Results.front().Rows.array() == 0.0).all();
+  this->AllAreSources = !areTimes && this->Domain->Mesh().NumberOfVertices() > 0 &&
+    (this->Results.front().Rows.array() == 0.0).all();
   this->Results.push_back(
     Output::OfNumber("NumberOfSources", sources.Count, Combination::Sum, OutputType::Integer));
   this->Results.push_back(

@@ -71,7 +71,7 @@ TangentVectors SquaresOfFixedLines(const TriangleMesh& mesh, const Eigen::Ref<co
 void AddFixedLines(const TangentVectors& squares, TangentVectors& lines, Vector& weights,
   const ParallelFor& parallel)
 {
-  constexpr double share = 1e-3;
+  constexpr double share = 1e-6;
   ForEach(parallel, static_cast<Index>(lines.rows()),
     [&](Index t)
     {

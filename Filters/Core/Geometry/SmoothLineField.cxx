@@ -35,7 +35,7 @@ Values StartLoad(const LineFieldOperator& laplacian, const Eigen::Ref<const Tang
   laplacian.Project(start, weights, preferred, diagonal);
   const double size = preferred.cwiseAbs().maxCoeff();
   const double largest = mass.maxCoeff();
-  constexpr double noise = 1e-9;
+  constexpr double noise = 1e-12;
   Values b(mass.size(), 1);
   for (Eigen::Index i = 0; i < mass.size(); ++i)
   {
