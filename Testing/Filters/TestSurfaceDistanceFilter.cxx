@@ -472,4 +472,7 @@ TEST(DistanceFilter, WarnsAboutSourcesThatDoNotCount)
   SetInputArray(filter, 1, "");
   AddPointArray(grid, "source", 1, [](vtkIdType, int) { return 2.0; });
   EXPECT_TRUE(Has(warningOf(), "all points of the surface are sources"));
+  AddPointArray(grid, "mask", 1, [](vtkIdType, int) { return 1.0; }); // no triangle takes part
+  SetInputArray(filter, 1, "mask");
+  EXPECT_FALSE(Has(warningOf(), "all points of the surface are sources"));
 }
