@@ -67,6 +67,7 @@ class ProgressReporter:
         self._bar = None
         self._call: Callable[[float], Any] | None = None
         self._parts, self._part = parts, 0
+        self._reached = 0.0
         if progress is True:
             try:
                 from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
@@ -86,12 +87,18 @@ class ProgressReporter:
         """For C++: called with the fraction of the present part."""
         if self._call is None:
             return None
-        return lambda fraction: self._call((self._part + fraction) / self._parts)
+        return lambda fraction: self._report((self._part + fraction) / self._parts)
 
     def finish_part(self) -> None:
         self._part += 1
         if self._call is not None:
-            self._call(self._part / self._parts)
+            self._report(self._part / self._parts)
+
+    def _report(self, fraction: float) -> Any:
+        """Set-up may have reported more than the first part of the steps does."""
+        assert self._call is not None
+        self._reached = max(self._reached, fraction)
+        return self._call(self._reached)
 
     def __enter__(self) -> ProgressReporter:
         return self
