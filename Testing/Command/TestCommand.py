@@ -649,6 +649,9 @@ class OtherCommands(CommandTest):
         self.assertLess(after.parts[0].values[:, 0].std(), 0.5 * NOISE.std())
         self.succeed("smooth a.vtp a.vtp 5 out.vtp --column ids")
         self.assertLess(read_data("out.vtp").parts[0].values[:, 1].std(), 0.5 * order.std())
+        samples.write_vtk("a.vtp", arrays={"ids": order})  # nothing else is there to smooth
+        self.succeed("smooth a.vtp a.vtp 5 out.vtp")
+        self.assertLess(read_data("out.vtp").parts[0].values[:, 0].std(), 0.5 * order.std())
 
     @unittest.skipUnless(HAS_VTK, "needs vtk")
     def test_a_vector_of_vtk_has_one_label_per_vertex(self):

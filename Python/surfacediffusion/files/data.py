@@ -302,7 +302,8 @@ def _read_vtk(content, on_faces=False):
     attributes = mesh.GetCellData() if on_faces else mesh.GetPointData()
     arrays = vtk_files.arrays_of(attributes)
     active = attributes.GetScalars()
-    usual = {active.GetName()} if active is not None else set(arrays) - vtk_files.numbers_of(attributes)
+    usual = {active.GetName()} if active is not None else (
+        set(arrays) - vtk_files.numbers_of(attributes) or set(arrays))  # numbers alone are data
     return _mesh_data(content, mesh, arrays, usual)
 
 
