@@ -28,6 +28,11 @@
  * process 0 alone. Unless a subclass solves with the pieces themselves, the surface is gathered in
  * process 0 and the result is scattered.
  *
+ * **Short edges.** The ends of an edge below 1e-10 of the longest side of one of its triangles are one
+ * point of the surface, as at the seams and poles of VTK's parametric surfaces: their values are
+ * combined as those of merged points. Subclasses that solve with the pieces themselves do not join
+ * them.
+ *
  * **Errors.** An update that reports an error fails: GetExecutive()->Update() returns 0, filters
  * behind this one do not execute, and GetErrorCode() is vtkErrorCode::UserError (0 after an update
  * that has succeeded or was aborted). The output is the unchanged input. The next update tries

@@ -66,6 +66,7 @@ std::unique_ptr<Surface> Run::MakeSurface(const BlockInput& input, const Reducti
   if (input.Decomposition)
   {
     options.LengthUnit = input.Decomposition->FindLengthUnit();
+    options.JoinShortEdges = false;
   }
   std::unique_ptr<Surface> surface;
   RunCollectively(processes,

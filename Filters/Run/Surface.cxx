@@ -129,11 +129,16 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
 {
   CheckArrays(this->Arrays, options, parallel);
   this->SelectTriangles(options);
+  if (options.JoinShortEdges)
+  {
+    this->JoinPoints(parallel);
+  }
   progress.Report(0.1);
   this->Build(options, parallel, progress.Part(0.1, 1.0));
   this->ReleaseTriangles();
   this->FindVertices();
-  this->Found.DegenerateTriangles = this->Working->Diagnostics().DegenerateTriangles;
+  this->Found.DegenerateTriangles =
+    this->Working->Diagnostics().DegenerateTriangles - this->Found.JoinedTriangles;
   this->Found.NonManifoldEdges = this->Working->Diagnostics().NonManifoldEdges;
   this->Found.EdgesLeft = this->Flipped ? this->Flipped->NumberOfEdgesLeft() : 0;
   if (!options.MergeCoincidentPoints)
@@ -194,6 +199,37 @@ void Surface::SelectTriangles(const SurfaceOptions& options)
     {
       excluded[static_cast<std::size_t>(point)] = 1;
     }
+  }
+}
+
+/// The ends of short edges of the selected triangles become one point.
+void Surface::JoinPoints(const ParallelFor& parallel)
+{
+  SurfaceDiffusion::Triangles& triangles = this->Arrays.Triangles;
+  const std::vector<Index> joined = JoinShortEdges(this->Arrays.Points, triangles, parallel);
+  if (joined.empty())
+  {
+    return;
+  }
+  const auto hasTwoEqual = [](const auto& corners)
+  { return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]; };
+  const auto representativeOf = [&](Index point)
+  { return joined[static_cast<std::size_t>(point)]; };
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+  {
+    auto corners = triangles.row(t);
+    const bool hadTwoEqual = hasTwoEqual(corners);
+    corners = corners.unaryExpr(representativeOf).eval();
+    this->Found.JoinedTriangles += hasTwoEqual(corners) && !hadTwoEqual;
+  }
+  if (this->Representative.empty())
+  {
+    this->Representative = joined;
+    return;
+  }
+  for (Index& point : this->Representative)
+  {
+    point = representativeOf(point);
   }
 }
 

@@ -35,6 +35,9 @@ struct SurfaceOptions
 {
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
+  /// The ends of edges without a length are one point: see JoinShortEdges(). Off in pieces of a
+  /// surface, whose other pieces may know the points but not the edge.
+  bool JoinShortEdges = true;
   bool IntrinsicDelaunay = false;
   BoundaryEdges Boundaries = BoundaryEdges::Flip; ///< of the intrinsic Delaunay triangulation
   double LengthUnit = 0.0; ///< of the meshes; 0: chosen by the extent of the surface
@@ -43,7 +46,8 @@ struct SurfaceOptions
 /// Counts of the parts of a surface that are ignored or look unintended.
 struct SurfaceDiagnostics
 {
-  Index DegenerateTriangles = 0;
+  Index DegenerateTriangles = 0; ///< left out, so that the surface may be cut there
+  Index JoinedTriangles = 0; ///< without an area, too, but their short edges are points
   Index UnusedPoints = 0; ///< not in any participating triangle; excluded points do not count
   Index NonManifoldEdges = 0;
   Index CoincidentBoundaryPoints = 0; ///< counted if merging is off
@@ -107,6 +111,7 @@ public:
 
 private:
   void SelectTriangles(const SurfaceOptions& options);
+  void JoinPoints(const ParallelFor& parallel);
   void Build(
     const SurfaceOptions& options, const ParallelFor& parallel, const ProgressMonitor& progress);
   void ReleaseTriangles();

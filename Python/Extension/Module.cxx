@@ -194,8 +194,9 @@ NB_MODULE(_core, m)
 
   nb::class_<SurfaceOperators>(m, "Operators")
     .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool, bool,
-           const nb::object&>(),
-      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "intrinsic_delaunay"_a, "progress"_a.none())
+           bool, const nb::object&>(),
+      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "intrinsic_delaunay"_a, "join_short_edges"_a,
+      "progress"_a.none())
     .def("masses", &SurfaceOperators::Masses)
     .def("stiffness", &SurfaceOperators::Stiffness, "diffusivity"_a.none())
     .def("gradient", &SurfaceOperators::Gradient)

@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -157,12 +159,15 @@ nb::tuple SurfaceDistances::FromAll(const LongArray& rows,
       const GeodesicDistance::Arrival arrival = apart
         ? this->Fronts->FindNearest(fronts, monitor)
         : this->Fronts->Find(fronts, std::numeric_limits<double>::infinity(), monitor);
-      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      for (std::size_t point = 0; point < times.size(); ++point)
       {
-        const auto point = static_cast<std::size_t>(mesh.InputVertex()[i]);
-        const Index front = arrival.Sources[static_cast<std::size_t>(i)];
-        times[point] = arrival.Times[static_cast<std::size_t>(i)] * unit;
-        nearest[point] = front < 0 ? -1 : sourceOf[static_cast<std::size_t>(front)];
+        const Index i = this->Built->VertexOf(static_cast<Index>(point));
+        if (i >= 0)
+        {
+          const Index front = arrival.Sources[static_cast<std::size_t>(i)];
+          times[point] = arrival.Times[static_cast<std::size_t>(i)] * unit;
+          nearest[point] = front < 0 ? -1 : sourceOf[static_cast<std::size_t>(front)];
+        }
       }
     });
   return nb::make_tuple(NewArray(std::move(times)), NewArray(std::move(nearest)));
@@ -194,10 +199,10 @@ nb::object SurfaceDistances::ByHeat(
         }
       }
       const Values distances = this->Heat->Find({ sources }, monitor.Part(0.7, 1.0));
-      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      for (std::size_t point = 0; point < found.size(); ++point)
       {
-        found[static_cast<std::size_t>(mesh.InputVertex()[i])] =
-          distances(i, 0) * mesh.LengthUnit();
+        const Index i = this->Built->VertexOf(static_cast<Index>(point));
+        found[point] = i < 0 ? found[point] : distances(i, 0) * mesh.LengthUnit();
       }
     });
   return NewArray(std::move(found));
@@ -213,6 +218,16 @@ nb::tuple SurfaceDistances::FromEach(
   std::vector<double> data;
   std::vector<Index> columns;
   std::vector<std::int64_t> begin = { 0 };
+  // The points of vertices that have more than one.
+  std::multimap<Index, Index> copies;
+  for (Index point = 0; point < static_cast<Index>(this->Input->NumberOfPoints()); ++point)
+  {
+    const Index i = this->Built->VertexOf(point);
+    if (i >= 0 && mesh.InputVertex()[i] != point)
+    {
+      copies.emplace(i, point);
+    }
+  }
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
@@ -239,6 +254,9 @@ nb::tuple SurfaceDistances::FromEach(
             {
               double& time = arrival.Times[static_cast<std::size_t>(i)];
               row.emplace_back(mesh.InputVertex()[i], time * unit);
+              const auto [copy, end] = copies.equal_range(i);
+              std::transform(copy, end, std::back_inserter(row),
+                [&](const auto& entry) { return std::make_pair(entry.second, time * unit); });
               time = never;
               arrival.Sources[static_cast<std::size_t>(i)] = -1;
             }

@@ -53,11 +53,12 @@ struct CompressedRows
 
 SurfaceOperators::SurfaceOperators(std::shared_ptr<const InputSurface> surface,
   const std::optional<FlagArray>& mask, bool maskOnFaces, bool intrinsicDelaunay,
-  const nb::object& progress)
+  bool joinShortEdges, const nb::object& progress)
   : Input(std::move(surface))
 {
   SurfaceOptions options;
   options.IntrinsicDelaunay = intrinsicDelaunay;
+  options.JoinShortEdges = joinShortEdges;
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
@@ -194,13 +195,14 @@ nb::tuple SurfaceOperators::Modes(
         this->Coefficients(diffusivity), count, PythonThreads::Instance(), monitor);
       const Vector values = found.Eigenvalues / unit / unit;
       eigenvalues.assign(values.begin(), values.end());
-      ForEach(PythonThreads::Instance(), mesh.NumberOfVertices(),
-        [&](Index i)
+      ForEach(PythonThreads::Instance(), static_cast<Index>(n),
+        [&](Index point)
         {
-          const auto point = static_cast<std::ptrdiff_t>(mesh.InputVertex()[i]);
-          for (Index k = 0; k < count; ++k)
+          const Index i = this->Built->VertexOf(point);
+          for (Index k = 0; i >= 0 && k < count; ++k)
           {
-            modes[static_cast<std::size_t>(point * count + k)] = found.Modes(i, k) / unit;
+            const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(point) * count;
+            modes[static_cast<std::size_t>(row + k)] = found.Modes(i, k) / unit;
           }
         });
     });

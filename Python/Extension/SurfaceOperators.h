@@ -15,9 +15,10 @@ namespace SurfaceDiffusion
 class SurfaceOperators
 {
 public:
+  /// joinShortEdges: for modes, not for matrices, in which every point keeps its row.
   SurfaceOperators(std::shared_ptr<const InputSurface> surface,
     const std::optional<FlagArray>& mask, bool maskOnFaces, bool intrinsicDelaunay,
-    const nanobind::object& progress);
+    bool joinShortEdges, const nanobind::object& progress);
 
   /// The control areas (n).
   nanobind::object Masses() const;

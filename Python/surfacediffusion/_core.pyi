@@ -113,6 +113,7 @@ class Operators:
         mask: Optional[NDArray[Any]],
         mask_on_faces: bool,
         intrinsic_delaunay: bool,
+        join_short_edges: bool,
         progress: Progress,
     ) -> None: ...
     def masses(self) -> NDArray[Any]: ...

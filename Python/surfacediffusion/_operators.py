@@ -212,7 +212,8 @@ def eigenmodes(
     """
     surface = as_surface(surface)
     tensors = _as_tensors(surface, diffusivity)
-    operators = _make_operators(surface, mask, _as_delaunay(surface, intrinsic_delaunay, tensors))
+    operators = _make_operators(surface, mask, _as_delaunay(surface, intrinsic_delaunay, tensors),
+                                join_short_edges=True)
     warn_of_seams(operators, "nothing flows between them")
     most = operators.number_of_vertices()
     if most == 0:
@@ -236,9 +237,11 @@ def import_sparse(function: str) -> Any:
     return sparse
 
 
-def _make_operators(surface: Surface, mask: Any, intrinsic_delaunay: bool = False) -> Any:
+def _make_operators(surface: Surface, mask: Any, intrinsic_delaunay: bool = False,
+                    join_short_edges: bool = False) -> Any:
     flags, on_faces = find_mask(mask, (surface.n_points, surface.n_faces))
-    return _core.Operators(surface._core, flags, on_faces, intrinsic_delaunay, None)
+    return _core.Operators(surface._core, flags, on_faces, intrinsic_delaunay, join_short_edges,
+                           None)
 
 
 def _as_delaunay(surface: Surface, intrinsic_delaunay: Any, tensors: Any) -> bool:

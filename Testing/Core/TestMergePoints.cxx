@@ -66,3 +66,29 @@ TEST(MergePoints, CoordinatesOfAnySizeAreCompared)
     EXPECT_EQ(near[48], 48);
   }
 }
+
+TEST(JoinShortEdges, FollowsChainsOfThem)
+{
+  Points points(6, 3);
+  points << 0, 0, 0, 1, 0, 0, 1e-16, 0, 0, 0, 1, 0, 1e-16, 1e-17, 0, 1, 1, 0;
+  Triangles triangles(4, 3);
+  triangles << 4, 2, 1, 2, 0, 3, 1, 5, 3, 0, 1, 3;
+  EXPECT_EQ(
+    JoinShortEdges(points, triangles, SerialFor()), (std::vector<Index>{ 0, 1, 0, 3, 0, 5 }));
+  EXPECT_TRUE(JoinShortEdges(points, triangles.bottomRows(2), SerialFor()).empty());
+}
+
+TEST(JoinShortEdges, LeavesNeedlesOfEverySizeAndPlace)
+{
+  for (const double size : { 1e-200, 1.0, 1e200, 1.7e308 })
+  {
+    Points points(3, 3);
+    points << -size, 0, 0, size, 0, 0, size, 1e-9 * size, 0;
+    Triangles triangles(1, 3);
+    triangles << 0, 1, 2;
+    EXPECT_TRUE(JoinShortEdges(points, triangles, SerialFor()).empty()) << size;
+    points(2, 1) = 1e-11 * size;
+    EXPECT_EQ(JoinShortEdges(points, triangles, SerialFor()), (std::vector<Index>{ 0, 1, 1 }))
+      << size;
+  }
+}

@@ -99,6 +99,43 @@ class Seams(unittest.TestCase):
                 call(whole)
 
 
+    def test_ends_of_edges_without_a_length_are_one_point(self):
+        whole = sd.sphere(3)
+        # As at a seam: some triangles of point 5 get a copy of it, and two slivers lie between.
+        faces = whole.triangles.copy()
+        n, point = whole.n_points, 5
+        around = {face[(k + 1) % 3]: (row, face[(k + 2) % 3])
+                  for row, face in enumerate(faces.tolist()) for k in range(3) if face[k] == point}
+        first = min(around)
+        row, middle = around[first]
+        other, last = around[middle]
+        for moved in (row, other):
+            faces[moved][faces[moved] == point] = n
+        faces = np.vstack([faces, [[point, n, first], [n, point, last]]])
+        split = Surface(np.vstack([whole.points, whole.points[point] + [1e-16, 0, 0]]), faces)
+        z = split.points[:, 2]
+        for call in (lambda s: sd.eigenmodes(s, 6).modes[:, 0],
+                     lambda s: sd.eigenmodes(s, 6).eigenvalues,
+                     lambda s: sd.distance(s, [70]),
+                     lambda s: sd.distance(s, [70], method="Heat"),
+                     lambda s: sd.nearest_sources(s, [0, 70, 99])[0],
+                     lambda s: sd.distances(s, [70, point]).toarray()[:, :n].T,
+                     lambda s: sd.random_field(s, 1, fwhm=0.5),
+                     lambda s: sd.scale_filter(s, z[:s.n_points], 1.0),
+                     lambda s: heat(s, z[:s.n_points], fwhm=0.5),
+                     lambda s: sd.curvature(s).mean):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                expected, found = np.asarray(call(whole)), np.asarray(call(split))
+            np.testing.assert_allclose(found[:len(expected)], expected, rtol=1e-9, atol=1e-9)
+            if len(found) > n:
+                np.testing.assert_array_equal(found[n], found[point])
+        near = sd.distances(split, [70], cutoff=2.0).toarray()[0]
+        self.assertEqual(near[n], near[point])
+        # Matrices keep a row for every point.
+        self.assertGreater(sd.mass_matrix(split).diagonal().min(), 0)
+
+
 class Images(unittest.TestCase):
     def setUp(self):
         self.mesh = PolyMesh(left=InMemoryMesh(POINTS, FACES), right=InMemoryMesh(POINTS * 0.9, FACES))

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/MergePoints.h"
 
+#include "Core/Foundation/DisjointSets.h"
+#include "Core/Surface/SideLengths.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -94,6 +97,55 @@ std::vector<Index> MergePoints(const Points& points, double tolerance)
         }
       }
     }
+  }
+  return representative;
+}
+
+std::vector<Index> JoinShortEdges(
+  const Points& points, const Triangles& triangles, const ParallelFor& parallel)
+{
+  constexpr double shortest = 1e-10; // of the longest side of the triangle
+  // Halves and the largest component neither overflow nor underflow.
+  const auto halfSide = [&](Index t, int a)
+  {
+    return (0.5 * points.row(triangles(t, Next(a))) - 0.5 * points.row(triangles(t, Last(a))))
+      .lpNorm<Eigen::Infinity>();
+  };
+  const auto visitShort = [&](Index t, const auto& visit)
+  {
+    const std::array<double, 3> sides{ halfSide(t, 0), halfSide(t, 1), halfSide(t, 2) };
+    const double longest = *std::max_element(sides.begin(), sides.end());
+    for (int a = 0; a < 3; ++a)
+    {
+      const Index first = triangles(t, Next(a));
+      const Index second = triangles(t, Last(a));
+      if (first != second && sides[a] <= shortest * longest)
+      {
+        visit(first, second);
+      }
+    }
+  };
+  const auto count = static_cast<Index>(triangles.rows());
+  const double found = Max(parallel, count,
+    [&](Index t)
+    {
+      double any = 0.0;
+      visitShort(t, [&](Index, Index) { any = 1.0; });
+      return any;
+    });
+  if (found == 0.0)
+  {
+    return {};
+  }
+  DisjointSets sets(static_cast<Index>(points.rows()));
+  for (Index t = 0; t < count; ++t)
+  {
+    visitShort(t, [&](Index first, Index second) { sets.Join(first, second); });
+  }
+  std::vector<Index> representative(static_cast<std::size_t>(points.rows()));
+  for (Index i = 0; i < static_cast<Index>(points.rows()); ++i)
+  {
+    representative[static_cast<std::size_t>(i)] = sets.Find(i);
   }
   return representative;
 }
