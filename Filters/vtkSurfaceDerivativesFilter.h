@@ -43,8 +43,11 @@
  * smoothing would flatten them. White noise of standard deviation s at points of distance h leaves
  * an error of about s h/FWHM^2 in each component of the gradient.
  *
- * Scalars on cells, and vectors on cells if they are smoothed, go to the points first, by the means
- * over the control cells. Vectors on cells are otherwise used as they are.
+ * Scalars on cells, and vectors on cells if they are smoothed, go to the points first: each gets the
+ * value of the linear function in its tangent plane that fits the data at the centroids of the
+ * cells around it, at the boundary also of the next ones. So linear functions are exact for data on
+ * cells, too. Vectors on cells are otherwise constant on each cell, so that the curl of a gradient
+ * on cells is 0; along the boundary divergence and curl are then wrong for fields that vary.
  *
  * Input array 1 (points or cells) is a mask: triangles with a nonzero point or cell take no part,
  * and the surface ends there; so do triangles with missing data (NaN in any component). Points

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/DerivativesRun.h"
 
+#include "Core/Geometry/CellFits.h"
 #include "Core/Geometry/HeatRegression.h"
 #include "Run/CellFields.h"
 
@@ -225,8 +226,8 @@ Values DerivativesRun::ReadAtVertices(const Fields& fields, const Derivatives& o
     {
       weights[static_cast<Eigen::Index>(c)] = this->MissingRows[c] ? 0.0 : 1.0;
     }
-    u =
-      MakeCellTransfer(surface, fields, this->Parallel).ToVertices(fields.Data.Values, weights).Of;
+    u = FitCells(surface.InputMesh(), MakeCellTransfer(surface, fields, this->Parallel), positions,
+      operators.Normals().OfVertices, fields.Data.Values, weights, this->Parallel);
   }
   else
   {

@@ -1027,7 +1027,7 @@ def derivatives(
     values : array_like, shape (n,), (n, k), (m,) or (m, k)
         Data at points or faces: vectors in space of Divergence and Curl, k being a multiple of 3.
         NaN is missing: the triangles there take no part. Scalars at faces go to the points first, by
-        the means over their control areas; vectors do so if they are smoothed.
+        linear functions that fit them around each point; vectors do so if they are smoothed.
     {on_faces}
     {left_out}
     {progress}

@@ -237,6 +237,64 @@ TEST(Derivatives, OfConstantsAndOfLinearFunctionsOnPlanesAreExact)
   EXPECT_LT(sphere.cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(Derivatives, OfLinearFunctionsOnCellsAreExactOnPlanes)
+{
+  const Drawn s = UnevenPlate();
+  const Eigen::RowVector3d normal =
+    (s.Vertices.row(s.Faces(0, 1)) - s.Vertices.row(s.Faces(0, 0)))
+      .cross(s.Vertices.row(s.Faces(0, 2)) - s.Vertices.row(s.Faces(0, 0)))
+      .normalized();
+  const Eigen::RowVector3d slope(0.3, -1.2, 0.7);
+  const Eigen::RowVector3d tangential = slope - slope.dot(normal) * normal;
+  Values u(s.Faces.rows(), 1);
+  for (Eigen::Index t = 0; t < s.Faces.rows(); ++t)
+  {
+    const Eigen::RowVector3d sum =
+      s.Vertices.row(s.Faces(t, 0)) + s.Vertices.row(s.Faces(t, 1)) + s.Vertices.row(s.Faces(t, 2));
+    u(t, 0) = 5.0 + sum.dot(slope) / 3.0;
+  }
+  const double without = std::numeric_limits<double>::quiet_NaN();
+  for (const bool isMissing : { false, true })
+  {
+    u(17, 0) = isMissing ? without : u(17, 0);
+    for (const bool onCells : { false, true })
+    {
+      const Values gradient = Compute(s, u, Quantity::Gradient, 0.0, onCells, true);
+      Index missing = 0;
+      for (Eigen::Index i = 0; i < gradient.rows(); ++i)
+      {
+        const bool isNaN = gradient.row(i).hasNaN();
+        missing += isNaN;
+        EXPECT_TRUE(isNaN || (gradient.row(i) - tangential).norm() < 1e-11) << i;
+      }
+      EXPECT_EQ(missing, isMissing && onCells ? 1 : 0);
+    }
+  }
+}
+
+TEST(Derivatives, OfDataOnCellsAreAsAccurateAsThoseOfPoints)
+{
+  const auto of = [](const Eigen::RowVector3d& p)
+  { return Eigen::RowVectorXd::Constant(1, std::sin(2.0 * p[0] + 1.0) * std::cos(1.5 * p[1])); };
+  for (const double amount : { 0.0, 0.3 })
+  {
+    const Drawn s = Jittered(Plate(40, 1.0), amount * 0.05, -0.99, 0.99, -0.99, 0.99);
+    Drawn centroids = s;
+    centroids.Vertices.resize(s.Faces.rows(), 3);
+    for (Eigen::Index t = 0; t < s.Faces.rows(); ++t)
+    {
+      centroids.Vertices.row(t) = (s.Vertices.row(s.Faces(t, 0)) + s.Vertices.row(s.Faces(t, 1)) +
+                                    s.Vertices.row(s.Faces(t, 2))) /
+        3.0;
+    }
+    const Values ofPoints = Compute(s, Sample(s, 1, of), Quantity::Gradient);
+    const Values ofCells =
+      Compute(s, Sample(centroids, 1, of), Quantity::Gradient, 0.0, false, true);
+    // Means over the control cells give 0.15 and 0.24.
+    EXPECT_LT(RootMeanSquareOf(ofCells - ofPoints), 0.03) << amount;
+  }
+}
+
 TEST(Derivatives, ObeyTheTheoremsOfGaussAndStokes)
 {
   const Drawn sphere = Icosphere(3);

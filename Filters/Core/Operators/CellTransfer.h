@@ -71,6 +71,17 @@ public:
     return mean;
   }
 
+  /// Call f(vertex) for the corners of a cell.
+  template <typename F>
+  void ForEachVertexOf(Index cell, const F& f) const
+  {
+    const auto c = static_cast<std::size_t>(cell);
+    for (Index k = this->CellBegin[c]; k < this->CellBegin[c + 1]; ++k)
+    {
+      f(this->Corners[static_cast<std::size_t>(k)].Vertex);
+    }
+  }
+
   /// Call f(cell) for the cells around a vertex.
   template <typename F>
   void ForEachCellAround(Index vertex, const F& f) const
