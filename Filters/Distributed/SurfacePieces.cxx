@@ -7,9 +7,11 @@
 #include "vtkAlgorithm.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
+#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
+#include "vtkInformationExecutivePortKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiBlockDataSet.h"
@@ -89,6 +91,35 @@ private:
     }
   }
 };
+
+/// Whether a connection was asked for one of several pieces, and a source before it makes pieces.
+/// Only sources say that they do; filters behind them pass on what they get.
+bool IsOneOfSeveralPieces(vtkInformation* connection)
+{
+  if (!connection ||
+    connection->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) < 2)
+  {
+    return false;
+  }
+  if (connection->Has(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST()))
+  {
+    return true;
+  }
+  vtkExecutive* producer = nullptr;
+  int output = 0;
+  vtkExecutive::PRODUCER()->Get(connection, producer, output);
+  for (int port = 0; producer && port < producer->GetNumberOfInputPorts(); ++port)
+  {
+    for (int i = 0; i < producer->GetNumberOfInputConnections(port); ++i)
+    {
+      if (IsOneOfSeveralPieces(producer->GetInputInformation(port, i)))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
 
 } // namespace
 
@@ -176,16 +207,13 @@ InputDescription DescribeInput(vtkDataObject* input)
 std::string DescribeLonePiece(
   vtkInformationVector** inputs, vtkMultiProcessController* controller, bool whole)
 {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* const input = inputs[0]->GetInformationObject(0);
-  const bool several = input && input->Has(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST()) &&
-    input->Has(Pipeline::UPDATE_NUMBER_OF_PIECES()) &&
-    input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
-  if (whole || !several || Processes(controller).Count() > 1)
+  if (whole || Processes(controller).Count() > 1 || !IsOneOfSeveralPieces(input))
   {
     return "";
   }
-  return "the input is one of " + std::to_string(input->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())) +
+  return "the input is one of " +
+    std::to_string(input->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES())) +
     " pieces, and Controller has no process with the others; allowed: a controller of all "
     "processes, or null if each piece is a separate surface";
 }

@@ -3,6 +3,10 @@
 #include "FilterTest.h"
 
 #include "vtkFVMHeatFilter.h"
+
+#include "vtkAppendPolyData.h"
+#include "vtkElevationFilter.h"
+#include "vtkPlatonicSolidSource.h"
 #include "vtkSphereSource.h"
 
 #include <gtest/gtest.h>
@@ -282,4 +286,40 @@ TEST(Updates, OneOfSeveralPiecesIsAnErrorUnlessDeclaredWhole)
   filter->UpdatePiece(0, 2, 0);
   EXPECT_EQ(messages.Errors.size(), 1u);
   EXPECT_NE(Result(filter, "NormalsDiffused"), nullptr);
+}
+
+TEST(Updates, OneOfSeveralPiecesIsAnErrorBehindOtherFiltersToo)
+{
+  vtkNew<vtkSphereSource> source;
+  vtkNew<vtkElevationFilter> elevation;
+  elevation->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkAppendPolyData> together;
+  together->AddInputData(Sphere(1));
+  together->AddInputConnection(elevation->GetOutputPort());
+  vtkNew<vtkFVMHeatFilter> filter;
+  SetInputArray(filter, 0, "Elevation");
+  Messages messages(filter);
+  std::size_t errors = 0;
+  for (vtkAlgorithmOutput* const last : { elevation->GetOutputPort(), together->GetOutputPort() })
+  {
+    filter->SetInputConnection(last);
+    filter->UpdatePiece(1, 2, 0);
+    ASSERT_EQ(messages.Errors.size(), ++errors);
+    EXPECT_NE(messages.Errors.back().find("one of 2 pieces"), std::string::npos);
+    EXPECT_EQ(Result(filter, "ElevationDiffused"), nullptr);
+  }
+}
+
+TEST(Updates, TheWholeOutputOfASourceWithoutPiecesIsNoPiece)
+{
+  vtkNew<vtkPlatonicSolidSource> source;
+  vtkNew<vtkElevationFilter> elevation;
+  elevation->SetInputConnection(source->GetOutputPort());
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputConnection(elevation->GetOutputPort());
+  SetInputArray(filter, 0, "Elevation");
+  Messages messages(filter);
+  filter->UpdatePiece(0, 2, 0);
+  EXPECT_TRUE(messages.Errors.empty());
+  EXPECT_NE(Result(filter, "ElevationDiffused"), nullptr);
 }
