@@ -13,7 +13,8 @@
  * **Sources** are
  * - the places of the surface that are nearest to the points and lines on input port 1 (a
  *   vtkPointSet), inside triangles, too. Points that no line uses are sources of their own; lines,
- *   cells of the types VTK_LINE and VTK_POLY_LINE, are one source where they share points; or
+ *   cells of the types VTK_LINE and VTK_POLY_LINE, are one source where they share points. Hidden
+ *   points and lines, and lines with a hidden point, take no part; or
  * - without an input on port 1, the points at which input array 0 is not 0. Points of one value are
  *   one source: a region, or a label.
  *

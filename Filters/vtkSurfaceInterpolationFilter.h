@@ -22,7 +22,8 @@
  *
  * **The values** are
  * - those of a surface with points on input port 1 (a vtkPointSet), which are projected to the
- *   nearest points of the surface, inside triangles, too. MaximumDistance leaves out far ones; or
+ *   nearest points of the surface, inside triangles, too. MaximumDistance leaves out far ones, and
+ *   hidden points have no value; or
  * - without an input on port 1, those of the data (input array 0) that are neither NaN nor masked.
  *   A cell has its value in the middle of its largest triangle.
  *

@@ -3,6 +3,7 @@
 #include "Conversion/PointInput.h"
 
 #include "Conversion/FieldReader.h"
+#include "Distributed/CellFlags.h"
 #include "Distributed/Processes.h"
 
 #include "vtkAlgorithm.h"
@@ -13,6 +14,8 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -50,6 +53,24 @@ template <typename Matrix>
 std::vector<double> Flat(const Matrix& matrix)
 {
   return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
+}
+
+/// Hidden points have no value, whatever stands there.
+void ForgetHidden(const std::vector<char>& hidden, PointSamples& samples)
+{
+  for (std::size_t i = 0; i < hidden.size(); ++i)
+  {
+    if (hidden[i] != 0)
+    {
+      const auto row = static_cast<Eigen::Index>(i);
+      samples.Places.row(row).setZero();
+      samples.Given.row(row).setConstant(std::numeric_limits<double>::quiet_NaN());
+      if (!samples.Weights.empty())
+      {
+        samples.Weights[i] = 0.0;
+      }
+    }
+  }
 }
 
 /// The points of all processes, in every process.
@@ -98,14 +119,25 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
   samples->Places.resize(0, 3);
   vtkPointSet* const points = vtkPointSet::SafeDownCast(data);
   const std::size_t before = problems.size();
+  const std::vector<char> hidden = points ? FindHiddenPoints(points) : std::vector<char>();
+  const bool hasVisible = points &&
+    points->GetNumberOfPoints() > std::count(hidden.begin(), hidden.end(), static_cast<char>(1));
+  const bool isEmpty = !processes.Any(hasVisible);
   if (!points)
   {
     problems.emplace_back(std::string("the points with values are a ") + data->GetClassName() +
       "; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
       "vtkTableToPolyData)");
   }
+  else if (isEmpty)
+  {
+    problems.push_back("the second input, the points with values, has " +
+      (hidden.empty() ? std::string("0 points; allowed: 1 or more")
+                      : std::to_string(hidden.size()) +
+            " hidden points; allowed: 1 or more that are not hidden"));
+  }
   // A process without points need not have the arrays of the others.
-  else if (points->GetNumberOfPoints() > 0 || processes.Count() == 1)
+  else if (points->GetNumberOfPoints() > 0)
   {
     vtkDataArray* const values = FindArray(points, names.Values, "PointValueArray", problems);
     vtkDataArray* const weights = names.Weights.empty()
@@ -126,6 +158,7 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
       {
         samples->Weights.push_back(weights->GetComponent(i, 0));
       }
+      ForgetHidden(hidden, *samples);
     }
   }
   if (processes.Any(problems.size() > before))

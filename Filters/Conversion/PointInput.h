@@ -36,7 +36,8 @@ struct PointInputNames
 };
 
 /// The points of a vtkPointSet with the chosen values and weights; those of all processes together.
-/// Null, with problems, if the data are of another type or have no such array. Collective.
+/// The values of hidden points are NaN, which is no value. Null, with problems, if the data are of
+/// another type, have no such array, or no points that are not hidden. Collective.
 std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
   const PointInputNames& names, vtkMultiProcessController* controller, Problems& problems);
 

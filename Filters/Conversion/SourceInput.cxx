@@ -3,14 +3,18 @@
 #include "Conversion/SourceInput.h"
 
 #include "Conversion/PointInput.h"
+#include "Distributed/CellFlags.h"
 #include "Distributed/Processes.h"
 
 #include "vtkCellType.h"
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointSet.h"
+#include "vtkUnsignedCharArray.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -20,10 +24,14 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The ends of the straight parts of lines, one after the other.
-std::vector<int> ReadSegments(vtkPointSet* points)
+/// The ends of the straight parts of lines, one after the other. hidden: of the points; those of
+/// hidden lines are added.
+std::vector<int> ReadSegments(vtkPointSet* points, std::vector<char>& hidden)
 {
   std::vector<int> ends;
+  vtkUnsignedCharArray* const flags = points->GetCellGhostArray();
+  const bool hasFlags = flags && flags->GetNumberOfTuples() == points->GetNumberOfCells();
+  const std::vector<char> hiddenPoints = hidden;
   vtkNew<vtkIdList> corners;
   for (vtkIdType c = 0; c < points->GetNumberOfCells(); ++c)
   {
@@ -33,11 +41,27 @@ std::vector<int> ReadSegments(vtkPointSet* points)
       continue;
     }
     points->GetCellPoints(c, corners);
+    const bool isHidden =
+      (hasFlags && (flags->GetValue(c) & vtkDataSetAttributes::HIDDENCELL) != 0) ||
+      std::any_of(corners->begin(), corners->end(),
+        [&](vtkIdType point) { return hiddenPoints[static_cast<std::size_t>(point)] != 0; });
+    if (isHidden)
+    {
+      for (const vtkIdType point : *corners)
+      {
+        hidden[static_cast<std::size_t>(point)] = 1;
+      }
+      continue;
+    }
     for (vtkIdType k = 1; k < corners->GetNumberOfIds(); ++k)
     {
       ends.push_back(static_cast<int>(corners->GetId(k - 1)));
       ends.push_back(static_cast<int>(corners->GetId(k)));
     }
+  }
+  for (const int end : ends) // also of a hidden line
+  {
+    hidden[static_cast<std::size_t>(end)] = 0;
   }
   return ends;
 }
@@ -59,7 +83,9 @@ std::shared_ptr<const SourceShapes> ReadSources(
   }
   auto sources = std::make_shared<SourceShapes>();
   sources->Places = ReadPlaces(points);
-  std::vector<int> ends = ReadSegments(points);
+  sources->Hidden = FindHiddenPoints(points);
+  sources->Hidden.resize(static_cast<std::size_t>(points->GetNumberOfPoints()), 0);
+  std::vector<int> ends = ReadSegments(points, sources->Hidden);
   if (processes.Count() > 1)
   {
     const Points& here = sources->Places;
@@ -78,11 +104,15 @@ std::shared_ptr<const SourceShapes> ReadSources(
     sources->Places =
       Eigen::Map<const Points>(places.data(), static_cast<Eigen::Index>(places.size() / 3), 3);
     ends = processes.GatherAll(ends);
+    sources->Hidden = processes.GatherAll(sources->Hidden);
   }
-  if (sources->Places.rows() == 0)
+  const std::vector<char>& hidden = sources->Hidden;
+  if (std::count(hidden.begin(), hidden.end(), 0) == 0)
   {
-    problems.emplace_back(
-      "the second input, the sources, has 0 points; allowed: 1 or more points or lines");
+    problems.push_back("the second input, the sources, has " +
+      (hidden.empty() ? std::string("0 points")
+                      : std::to_string(hidden.size()) + " hidden points") +
+      "; allowed: 1 or more points or lines" + (hidden.empty() ? "" : " that are not hidden"));
     return nullptr;
   }
   for (std::size_t k = 0; k + 1 < ends.size(); k += 2)
@@ -100,6 +130,7 @@ void AddSources(Fingerprint& fingerprint, const SourceShapes& sources)
   fingerprint.AddNumber(std::uint64_t{ sources.Segments.size() });
   fingerprint.AddBytes(
     sources.Segments.data(), sources.Segments.size() * sizeof(sources.Segments[0]));
+  fingerprint.AddBytes(sources.Hidden.data(), sources.Hidden.size());
 }
 
 } // namespace SurfaceDiffusion

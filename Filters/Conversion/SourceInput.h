@@ -14,8 +14,9 @@ class vtkMultiProcessController;
 namespace SurfaceDiffusion
 {
 
-/// The points and lines of a vtkPointSet, those of all processes together. Null, with a problem, if
-/// the data are of another type or have no points. Collective.
+/// The points and lines of a vtkPointSet, those of all processes together. Hidden points and lines
+/// take no part, nor do lines with a hidden point. Null, with a problem, if the data are of another
+/// type or have no points that take part. Collective.
 std::shared_ptr<const SourceShapes> ReadSources(
   vtkDataObject* data, vtkMultiProcessController* controller, Problems& problems);
 

@@ -51,10 +51,10 @@ std::vector<unsigned char> FindCellFlags(vtkPolyData* surface)
   return flags;
 }
 
-std::vector<char> FindHiddenPoints(vtkPolyData* surface)
+std::vector<char> FindHiddenPoints(vtkDataSet* data)
 {
-  vtkUnsignedCharArray* const flags = surface->GetPointGhostArray();
-  const vtkIdType count = surface->GetNumberOfPoints();
+  vtkUnsignedCharArray* const flags = data->GetPointGhostArray();
+  const vtkIdType count = data->GetNumberOfPoints();
   std::vector<char> hidden;
   for (vtkIdType i = 0; flags && flags->GetNumberOfTuples() == count && i < count; ++i)
   {

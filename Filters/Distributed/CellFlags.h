@@ -4,6 +4,7 @@
 
 #include <vector>
 
+class vtkDataSet;
 class vtkPolyData;
 
 namespace SurfaceDiffusion
@@ -15,6 +16,6 @@ namespace SurfaceDiffusion
 std::vector<unsigned char> FindCellFlags(vtkPolyData* surface);
 
 /// Per point, nonzero for hidden points. Empty if there are none.
-std::vector<char> FindHiddenPoints(vtkPolyData* surface);
+std::vector<char> FindHiddenPoints(vtkDataSet* data);
 
 } // namespace SurfaceDiffusion

@@ -248,17 +248,20 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
 void DistanceRun::RequireSource(const std::vector<const DistanceRun*>& runs)
 {
   SourceSet all;
-  Index vertices = 0; // none: all triangles have no area, which is no error
+  Index vertices = 0;
+  Index degenerate = 0;
   for (const DistanceRun* run : runs)
   {
     vertices += run->GetSurface().InputMesh().NumberOfVertices();
+    degenerate += run->GetSurface().Diagnostics().DegenerateTriangles;
     all.Count += run->Found.Count;
     all.Given += run->Found.Given;
     all.TooFar += run->Found.TooFar;
     all.Outside += run->Found.Outside;
     all.AreShapes = run->Found.AreShapes;
   }
-  if (all.Count > 0 || vertices == 0)
+  // A surface whose triangles have no area is no error.
+  if (all.Count > 0 || (vertices == 0 && degenerate > 0))
   {
     return;
   }

@@ -51,7 +51,8 @@ public:
   void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
   bool ExcludesMasked() const override { return true; }
 
-  /// Throws InputError, which says why, if none of the surfaces, which have an area, has a source.
+  /// Throws InputError, which says why, if none of the surfaces has a source. If all triangles that
+  /// the mask leaves have no area, that is no error.
   static void RequireSource(const std::vector<const DistanceRun*>& runs);
 
 private:

@@ -100,7 +100,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
   }
   for (Index i = 0; i < static_cast<Index>(shapes.Places.rows()); ++i)
   {
-    if (!shapes.Places.row(i).allFinite())
+    if (!IsSet(shapes.Hidden, static_cast<std::size_t>(i)) && !shapes.Places.row(i).allFinite())
     {
       throw InputError(Sentence("a coordinate is not finite at point ")
         << i << " of the sources; allowed: finite coordinates");
@@ -114,7 +114,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     {
       progress.Report(static_cast<double>(i) / all);
     }
-    if (isOnLine[i] != 0)
+    if (isOnLine[i] != 0 || IsSet(shapes.Hidden, i))
     {
       continue;
     }

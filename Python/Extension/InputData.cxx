@@ -333,7 +333,8 @@ void InputFields::SetSamples(const DoubleArray& places, const DoubleArray& value
   this->Samples = std::move(samples);
 }
 
-void InputFields::SetSources(const DoubleArray& places, const LongArray& segments)
+void InputFields::SetSources(
+  const DoubleArray& places, const LongArray& segments, const FlagArray& hidden)
 {
   auto sources = std::make_shared<SourceShapes>();
   sources->Places =
@@ -343,6 +344,7 @@ void InputFields::SetSources(const DoubleArray& places, const LongArray& segment
     sources->Segments.push_back(
       { static_cast<Index>(segments.data()[k]), static_cast<Index>(segments.data()[k + 1]) });
   }
+  sources->Hidden.assign(hidden.data(), hidden.data() + hidden.size());
   this->Sources = std::move(sources);
 }
 
@@ -397,6 +399,7 @@ Fingerprint InputFields::Version() const
   {
     add(this->Sources->Places);
     add(this->Sources->Segments);
+    add(this->Sources->Hidden);
   }
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
   for (const bool onFaces :

@@ -129,7 +129,7 @@ public:
   void SetSamples(const DoubleArray& places, const DoubleArray& values,
     const std::optional<FactorArray>& weights, const std::string& name);
   /// segments: pairs of rows of `places`, the straight parts of lines.
-  void SetSources(const DoubleArray& places, const LongArray& segments);
+  void SetSources(const DoubleArray& places, const LongArray& segments, const FlagArray& hidden);
 
   /// The same with a panel of the data's columns, which Components counts.
   InputFields Columns(int first, int count) const;

@@ -144,7 +144,7 @@ NB_MODULE(_core, m)
       "data_are_terms"_a, "on_faces"_a)
     .def("set_samples", &InputFields::SetSamples, "places"_a, "values"_a, "weights"_a.none(),
       "name"_a = "")
-    .def("set_sources", &InputFields::SetSources, "places"_a, "segments"_a)
+    .def("set_sources", &InputFields::SetSources, "places"_a, "segments"_a, "hidden"_a)
     .def(
       "set_speeds",
       [](InputFields& self, const FactorArray& speeds, bool onFaces) {

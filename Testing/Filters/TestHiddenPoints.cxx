@@ -13,6 +13,8 @@
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
+#include "vtkSurfaceDistanceFilter.h"
+#include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -248,4 +250,113 @@ TEST(HiddenPoints, OfPiecesAreAsIfTheirCellsWereHidden)
     EXPECT_TRUE(Identical(results[0][0], results[1][0])) << data;
     EXPECT_TRUE(Identical(results[0][1], results[1][1])) << data;
   }
+}
+
+TEST(HiddenPoints, OfTheSecondInputAreNoSources)
+{
+  // Points 1 and 4 are hidden; 2 to 4 are a line, 5 and 6 another one.
+  vtkNew<vtkPolyData> sources;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int i = 0; i < 7; ++i)
+  {
+    points->InsertNextPoint(i == 1 ? vtkMath::Nan() : i, i > 4 ? 8.0 : 0.0, 0.0);
+  }
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell({ 2, 3, 4 });
+  lines->InsertNextCell({ 5, 6 });
+  sources->SetPoints(points);
+  sources->SetLines(lines);
+  const auto flags = MakeFlags(7);
+  flags->SetValue(1, vtkDataSetAttributes::HIDDENPOINT);
+  flags->SetValue(4, vtkDataSetAttributes::HIDDENPOINT);
+  sources->GetPointData()->AddArray(flags);
+  vtkNew<vtkSurfaceDistanceFilter> filter;
+  filter->SetInputData(Grid(9, 9));
+  filter->SetInputData(1, sources);
+  filter->SetMethodToEikonal();
+  Messages messages(filter);
+  const auto expect = [&](bool hasLine)
+  {
+    filter->Update();
+    ASSERT_TRUE(messages.Errors.empty()) << messages.Errors[0];
+    EXPECT_EQ(filter->GetNumberOfSources(), hasLine ? 2 : 1);
+    EXPECT_NEAR(Result(filter, "Distance")->GetComponent(4, 0), 4.0, 1e-12);
+    EXPECT_NEAR(
+      Result(filter, "Distance")->GetComponent(80, 0), hasLine ? 2.0 : std::hypot(8.0, 8.0), 1e-6);
+    EXPECT_EQ(Result(filter, "NearestSource")->GetComponent(80, 0), hasLine ? 5.0 : 0.0);
+  };
+  expect(true);
+  const auto ofCells = MakeFlags(2);
+  ofCells->SetValue(1, vtkDataSetAttributes::HIDDENCELL);
+  sources->GetCellData()->AddArray(ofCells);
+  filter->Modified();
+  expect(false);
+  flags->FillValue(vtkDataSetAttributes::HIDDENPOINT);
+  filter->Modified();
+  filter->Update();
+  ASSERT_EQ(messages.Errors.size(), 1u);
+  EXPECT_NE(messages.Errors[0].find("the sources, has 7 hidden points; allowed: 1 or more points"),
+    std::string::npos)
+    << messages.Errors[0];
+}
+
+TEST(HiddenPoints, OfTheSecondInputHaveNoValue)
+{
+  const auto makeSamples = [](bool all)
+  {
+    auto samples = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (int i = 0; i < 40; ++i)
+    {
+      const double angle = 2.4 * i;
+      const double z = -0.9 + 0.045 * i;
+      const double r = std::sqrt(1.0 - z * z);
+      if (all || !IsHidden(i))
+      {
+        points->InsertNextPoint(
+          i == 5 ? vtkMath::Nan() : r * std::cos(angle), r * std::sin(angle), z);
+      }
+    }
+    samples->SetPoints(points);
+    AddPointArray(samples, "t", 1,
+      [&](vtkIdType i, int) { return all && IsHidden(i) ? Wild : points->GetPoint(i)[2]; });
+    AddPointArray(
+      samples, "w", 1, [&](vtkIdType i, int) { return all && IsHidden(i) ? -1.0 : 1.0; });
+    samples->GetPointData()->SetActiveScalars("t");
+    if (all)
+    {
+      HidePoints(samples);
+    }
+    return samples;
+  };
+  vtkSmartPointer<vtkDataArray> results[2];
+  for (const bool all : { false, true })
+  {
+    vtkNew<vtkSurfaceInterpolationFilter> filter;
+    filter->SetInputData(Sphere(3));
+    const auto samples = makeSamples(all);
+    filter->SetInputData(1, samples);
+    filter->SetPointWeightArray("w");
+    Messages messages(filter);
+    filter->Update();
+    ASSERT_TRUE(messages.Errors.empty()) << messages.Errors[0];
+    EXPECT_EQ(filter->GetNumberOfValues(), 38);
+    results[all] = Result(filter, "tInterpolated");
+    if (all)
+    {
+      vtkUnsignedCharArray::SafeDownCast(
+        samples->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName()))
+        ->FillValue(vtkDataSetAttributes::HIDDENPOINT);
+      filter->Modified();
+      filter->Update();
+      ASSERT_EQ(messages.Errors.size(), 1u);
+      EXPECT_NE(messages.Errors[0].find("the points with values, has 40 hidden points; allowed: "),
+        std::string::npos)
+        << messages.Errors[0];
+    }
+  }
+  ASSERT_TRUE(results[0] && results[1]);
+  EXPECT_TRUE(Identical(results[0], results[1]));
 }

@@ -472,7 +472,31 @@ TEST(DistanceFilter, WarnsAboutSourcesThatDoNotCount)
   SetInputArray(filter, 1, "");
   AddPointArray(grid, "source", 1, [](vtkIdType, int) { return 2.0; });
   EXPECT_TRUE(Has(warningOf(), "all points of the surface are sources"));
-  AddPointArray(grid, "mask", 1, [](vtkIdType, int) { return 1.0; }); // no triangle takes part
-  SetInputArray(filter, 1, "mask");
-  EXPECT_FALSE(Has(warningOf(), "all points of the surface are sources"));
+  const auto withoutArea = Grid(3, 3, 0.0);
+  AddPointArray(withoutArea, "source", 1, [](vtkIdType, int) { return 2.0; });
+  filter->SetInputData(withoutArea);
+  const std::string warning = warningOf();
+  EXPECT_TRUE(Has(warning, "triangles of zero area are barriers")) << warning;
+  EXPECT_FALSE(Has(warning, "all points of the surface are sources")) << warning;
+}
+
+TEST(DistanceFilter, OfASurfaceThatIsMaskedAltogetherIsOneError)
+{
+  const auto grid = MarkedGrid(9, 5, 3);
+  AddPointArray(grid, "mask", 1, [](vtkIdType, int) { return 1.0; });
+  grid->GetCellData()->AddArray(
+    MakeArray(VTK_DOUBLE, "mask", grid->GetNumberOfCells(), 1, [](vtkIdType, int) { return 1.0; }));
+  for (const bool onCells : { false, true })
+  {
+    auto filter = MakeFilter(grid);
+    SetInputArray(filter, 1, "mask", onCells);
+    EXPECT_TRUE(Has(ErrorOf(filter),
+      "all 1 nonzero points of SourceArray are where MaskArray excludes the surface"));
+    EXPECT_EQ(Result(filter, "Distance"), nullptr);
+    filter->SetInputData(1, Places({ { 0.0, 0.0, 0.0 } }));
+    EXPECT_TRUE(Has(ErrorOf(filter),
+      "no source is on the surface: of the points and lines, 0 are farther than MaximumDistance "
+      "and "
+      "1 where MaskArray excludes the surface"));
+  }
 }

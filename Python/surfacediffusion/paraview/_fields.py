@@ -92,6 +92,7 @@ class Sources:
 
     places: NDArray[np.float64]
     segments: NDArray[np.int64]
+    hidden: NDArray[np.uint8]  #: of the points
 
 
 class ArrayFinder:
@@ -204,7 +205,7 @@ def make_core(fields: Fields, block: Block) -> None:
         fields.core.set_samples(
             fields.samples.places, fields.samples.values, fields.samples.weights, fields.samples.name)
     if fields.sources is not None:
-        fields.core.set_sources(fields.sources.places, fields.sources.segments)
+        fields.core.set_sources(fields.sources.places, fields.sources.segments, fields.sources.hidden)
     speeds, times = _as_numbers(fields.speeds.values), _as_numbers(fields.start_times.values)
     if speeds is not None:
         fields.core.set_speeds(speeds, fields.speeds.on_cells)
@@ -278,6 +279,11 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Samples 
     """The values of the second input of an interpolation, and problems with it."""
     if not isinstance(data, vtkPointSet):
         return None, [f"the points with values are a {data.GetClassName()}" + _POINT_SET]
+    hidden = _hidden(data)
+    if hidden.all():
+        return None, ["the second input, the points with values, has " + (
+            f"{len(hidden)} hidden points; allowed: 1 or more that are not hidden" if len(hidden) else
+            "0 points; allowed: 1 or more")]
     problems: list[str] = []
 
     def find(name: str, label: str) -> Any:
@@ -301,27 +307,49 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Samples 
     if problems:
         return None, problems
     given = _as_data(values)
-    given = given[:, :data_components(given)]
-    return Samples(_places(data), np.ascontiguousarray(given, dtype=np.float64), _as_numbers(weights),
-                   values.GetName() or ""), []
+    given = np.array(given[:, :data_components(given)], dtype=np.float64, order="C")
+    places, factors = _places(data), _as_numbers(weights)
+    if hidden.any():  # no value, whatever stands there
+        places[hidden], given[hidden] = 0.0, np.nan
+        factors = None if factors is None else np.where(hidden, 0.0, factors)
+    return Samples(places, given, factors, values.GetName() or ""), []
 
 
 def read_sources(data: Any) -> tuple[Sources | None, list[str]]:
     """The points and lines of the second input of distances, and problems with it."""
     if not isinstance(data, vtkPointSet):
         return None, [f"the second input, the sources, is a {data.GetClassName()}" + _POINT_SET]
-    if data.GetNumberOfPoints() == 0:
-        return None, ["the second input, the sources, has 0 points; allowed: 1 or more points or lines"]
+    hidden = _hidden(data)
+    of_points = hidden.copy()
+    flags = data.GetCellGhostArray()
+    has_flags = flags is not None and flags.GetNumberOfTuples() == data.GetNumberOfCells()
     segments: list[int] = []
     kinds = vtkCellTypes()
     data.GetCellTypes(kinds)
     if any(kinds.IsType(kind) for kind in _LINES):
         for cell in range(data.GetNumberOfCells()):
             if data.GetCellType(cell) in _LINES:
-                corners = data.GetCell(cell).GetPointIds()
-                for k in range(1, corners.GetNumberOfIds()):
-                    segments += [corners.GetId(k - 1), corners.GetId(k)]
-    return Sources(_places(data), np.array(segments, dtype=np.int64)), []
+                ids = data.GetCell(cell).GetPointIds()
+                corners = [ids.GetId(k) for k in range(ids.GetNumberOfIds())]
+                if of_points[corners].any() or (
+                        has_flags and flags.GetValue(cell) & vtkDataSetAttributes.HIDDENCELL):
+                    hidden[corners] = True
+                else:
+                    segments += [end for pair in zip(corners, corners[1:]) for end in pair]
+    hidden[segments] = False  # also of a hidden line
+    if hidden.all():
+        return None, ["the second input, the sources, has " + (
+            f"{len(hidden)} hidden points; allowed: 1 or more points or lines that are not hidden"
+            if len(hidden) else "0 points; allowed: 1 or more points or lines")]
+    return Sources(_places(data), np.array(segments, dtype=np.int64), hidden.astype(np.uint8)), []
+
+
+def _hidden(data: Any) -> NDArray[np.bool_]:
+    """Which points are hidden."""
+    flags, count = data.GetPointGhostArray(), data.GetNumberOfPoints()
+    if flags is None or flags.GetNumberOfTuples() != count:
+        return np.zeros(count, dtype=bool)
+    return np.array(to_numpy(flags) & vtkDataSetAttributes.HIDDENPOINT, dtype=bool)
 
 
 def _places(data: Any) -> NDArray[np.float64]:
