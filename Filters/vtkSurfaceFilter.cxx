@@ -280,6 +280,7 @@ int vtkSurfaceFilter::RequestData(
   std::vector<SurfacePiece> pieces =
     CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
   this->Private->HasFailed = false;
+  this->Private->Numbers.Set({});
   const std::string alone = DescribeLonePiece(inputs, this->Controller, this->HasWholeSurface);
   if (!alone.empty())
   {

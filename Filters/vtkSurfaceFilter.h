@@ -35,8 +35,9 @@
  *
  * **Errors.** An update that reports an error fails: GetExecutive()->Update() returns 0, filters
  * behind this one do not execute, and GetErrorCode() is vtkErrorCode::UserError (0 after an update
- * that has succeeded or was aborted). The output is the unchanged input. The next update tries
- * again and reports the error again, until something has changed.
+ * that has succeeded or was aborted). The output is the unchanged input, also after an abort, and
+ * read-only values are those before the first update. The next update tries again and reports the
+ * error again, until something has changed.
  *
  * @sa vtkSurfaceModelAlgorithm vtkSurfaceDiffusionAlgorithm vtkSurfaceRunAlgorithm
  */
@@ -286,7 +287,8 @@ protected:
   virtual void CompletePiece(const SurfaceBlock& piece);
 
   /// Declare a read-only value, which the updates take from the numbers among the outputs and which
-  /// process 0 shares with all. byDefault: before the first update, and if there is none.
+  /// process 0 shares with all. byDefault: before the first update, after one without result, and if
+  /// there is none.
   void DeclareNumber(const char* name, double byDefault = 0.0);
   /// A number of the last update, or an entry of one that is a matrix; NaN beyond its entries.
   double FindNumber(const char* name, int row = 0, int column = 0) const;

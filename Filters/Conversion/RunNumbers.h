@@ -17,7 +17,7 @@ namespace SurfaceDiffusion
 class RunNumbers
 {
 public:
-  /// byDefault: before the first update, and after one without such a number.
+  /// byDefault: before the first update, and after one without result or such a number.
   void Declare(const std::string& name, double byDefault) { this->Defaults[name] = byDefault; }
   const std::map<std::string, double>& Declared() const { return this->Defaults; }
 

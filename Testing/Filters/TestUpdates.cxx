@@ -3,6 +3,8 @@
 #include "FilterTest.h"
 
 #include "vtkFVMHeatFilter.h"
+#include "vtkSurfaceDistanceFilter.h"
+#include "vtkSurfaceSegmentationFilter.h"
 
 #include "vtkAppendPolyData.h"
 #include "vtkElevationFilter.h"
@@ -322,4 +324,69 @@ TEST(Updates, TheWholeOutputOfASourceWithoutPiecesIsNoPiece)
   filter->UpdatePiece(0, 2, 0);
   EXPECT_TRUE(messages.Errors.empty());
   EXPECT_NE(Result(filter, "ElevationDiffused"), nullptr);
+}
+
+TEST(Updates, WithoutResultHaveTheReadOnlyValuesBeforeTheFirstOne)
+{
+  const auto surface = Sphere(3);
+  AddPointArray(surface, "f", 1, Rough);
+  surface->GetPointData()->SetActiveScalars("f");
+  vtkNew<vtkFVMHeatFilter> heat;
+  vtkNew<vtkSurfaceSegmentationFilter> segmentation;
+  vtkNew<vtkSurfaceDistanceFilter> distance;
+  const auto values = [&]
+  {
+    return std::vector<double>{ heat->GetMeanEdgeLength(), heat->GetTimeUnit(),
+      heat->GetValueRange(), double(heat->GetNumberOfStepsComputed()), segmentation->GetGap(),
+      segmentation->GetMeanEdgeLength(), distance->GetMeanEdgeLength(),
+      double(distance->GetNumberOfSources()) };
+  };
+  const std::vector<vtkPolyDataAlgorithm*> filters = { heat, segmentation, distance };
+  const std::vector<double> initial = values();
+  const auto updateAll = [&]
+  {
+    for (vtkPolyDataAlgorithm* const filter : filters)
+    {
+      const Messages quiet(filter);
+      filter->Modified();
+      filter->Update();
+    }
+  };
+  const auto expectValues = [&]
+  {
+    updateAll();
+    const std::vector<double> found = values();
+    for (std::size_t i = 0; i < found.size(); ++i)
+    {
+      EXPECT_NE(found[i], initial[i]) << i;
+    }
+    EXPECT_FALSE(std::isnan(segmentation->GetEffectiveMean(1, 0)));
+  };
+  const auto expectInitial = [&]
+  {
+    updateAll();
+    EXPECT_EQ(values(), initial);
+    EXPECT_TRUE(std::isnan(segmentation->GetEffectiveMean(1, 0)));
+  };
+  for (vtkPolyDataAlgorithm* const filter : filters)
+  {
+    filter->SetInputData(surface);
+  }
+  expectValues();
+  for (vtkPolyDataAlgorithm* const filter : filters)
+  {
+    SetInputArray(filter, 0, "none");
+  }
+  expectInitial();
+  for (vtkPolyDataAlgorithm* const filter : filters)
+  {
+    SetInputArray(filter, 0, "f");
+  }
+  expectValues();
+  for (vtkPolyDataAlgorithm* const filter : filters)
+  {
+    Listen(filter, [filter](double) { filter->SetAbortExecute(1); });
+  }
+  AddPointArray(surface, "f", 1, [](vtkIdType i, int k) { return Rough(i + 1, k); });
+  expectInitial();
 }

@@ -149,7 +149,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self.shapes.begin_update()
         refinement = Refinement(self.shapes)
         threads = _core.number_of_threads()
-        self._warnings, self._of_refinement = [], []
+        self._warnings, self._of_refinement, self._numbers = [], [], {}
         failure = ""
         completed = False
         try:
