@@ -48,6 +48,9 @@ def make_files(folder):
     write("empty", b"")
     write("random", np.random.default_rng(4).bytes(500))
     write("text.txt", "a letter\n")
+    write("table.txt", "# x y\n1 2\n3 4\n")
+    write("word.txt", "1\ntwo\n" * (N // 2))
+    write("comments.txt", "# nothing\n")
     write("page.xml", "<?xml version='1.0'?><html></html>")
     path("folder").mkdir()
     os.mkfifo(path("pipe.func.gii"))
@@ -165,6 +168,9 @@ CASES = [
     (DATA.format("cube.npy"), r"cube.npy: an array of shape \(3, 3, 3\)"),
     (DATA.format("complex.npy"), "complex.npy: values of type complex128; allowed: real"),
     (DATA.format("objects.npy"), "objects.npy: damaged NumPy npy file: Object arrays"),
+    (DATA.format("table.txt"), "table.txt: line 2 is '1 2'; allowed: one number per line, and comments after #"),
+    (DATA.format("word.txt"), "word.txt: line 2 is 'two'; allowed: one number per line"),
+    (DATA.format("comments.txt"), "comments.txt: a file of unknown kind"),
     (DATA.format("short.func.gii"), f"short.func.gii: {N - 1} values .* allowed: {N} values"),
     (DATA.format("right.func.gii"), "right.func.gii: data of CortexRight, but lh.surf.gii"),
     (DATA.format("mixed.func.gii"), f"mixed.func.gii: arrays of {N - 3} and {N} values"),
@@ -214,7 +220,7 @@ CASES = [
     ("inpaint lh.surf.gii lh.func.gii out --model fourier", "argument --model: invalid choice"),
     ("inpaint lh.surf.gii lh.func.gii out --missing short.func.gii", "short.func.gii: "),
     ("texture lh.surf.gii -1 out.func.gii", "argument FEATURE_SIZE: is '-1'"),
-    ("texture lh.surf.gii 5 out.off", "out.off: the name announces no format"),
+    ("texture lh.surf.gii 5 out.xyz", "out.xyz: the name announces no format"),
     ("segment lh.surf.gii lh.func.gii out.func.gii --regions 3 --means 1 2", "--regions is 3, but --means has 2 "
      "numbers; allowed: the same number, or --means alone"),
     ("texture lh.surf.gii 1e-4mm out.stl --relief 1e-5mm", "needs more than 4000000 triangles; allowed: "),
@@ -247,8 +253,15 @@ CASES = [
     ("info random", "random: a file of unknown kind"),
     ("info lh.surf.gii none", "none: cannot be read"),
     # outputs
-    ("smooth lh.surf.gii lh.func.gii 5 out.csv", "out.csv: named .csv, but it is written as GIFTI, the "
-     "format of the input"),
+    ("smooth lh.surf.gii lh.func.gii 5 out.csv", "out.csv: .csv names no format of files; allowed: .gii, since "
+     "it is written as GIFTI, the format of the input"),
+    ("smooth lh.surf.gii a.npy 5 out.xyz", "out.xyz: .xyz names no format of files; allowed: .npy, since "),
+    ("smooth lh.surf.gii a.mgh 5 out.xyz.gz", "out.xyz.gz: .xyz names no .*; allowed: .mgh, .mgz, since"),
+    ("smooth lh.surf.gii lh.curv 5 out.csv", "out.csv: .csv names no .*; allowed: no extension, since it is "
+     "written as FreeSurfer curv"),
+    ("smooth lh.surf.gii lh.func.gii 5 out.txt", "out.txt: named as text, but it is written as GIFTI"),
+    ("denoise-mesh a.ply out.xyz", "out.xyz: .xyz names no format of files; allowed: .ply, since"),
+    ("random-field lh.surf.gii out.txt --fwhm 5 --count 2", "out.txt: the name announces no format for 2 col"),
     ("smooth lh.surf.gii lh.func.gii 5 out.mgh", "out.mgh: named as FreeSurfer mgh, but it is "
                                                  "written as GIFTI"),
     ("smooth lh.surf.gii lh.func.gii 5 no/out.func.gii", "no/out.func.gii: cannot be written: "

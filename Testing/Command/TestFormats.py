@@ -65,6 +65,7 @@ class OneOpening(FormatTest):
         yield samples.write_annot("lh.annot", np.arange(N) % 3, ["unknown", "one", "two"])
         np.save("a.npy", NOISE)
         yield "a.npy"
+        yield self.write("a.txt", "\n".join(map(str, NOISE)))
         if HAS_VTK:
             yield samples.write_vtk("a.vtk")
             yield samples.write_vtk("a.vtp")
@@ -201,6 +202,56 @@ class NumbersOfVertices(FormatTest):
         self.succeed("smooth", "a.stl", "f.npy", 5, "o.npy", "--faces")
         self.succeed("smooth", "lh.surf.gii", "f.npy", 5, "p.npy", "--faces")
         np.testing.assert_allclose(np.load("o.npy"), np.load("p.npy"), atol=1e-5)
+
+
+class Text(FormatTest):
+    """A number per line."""
+
+    def setUp(self):
+        super().setUp()
+        samples.write_surface("lh.surf.gii")
+        np.save("a.npy", NOISE)
+        self.succeed("smooth", "lh.surf.gii", "a.npy", 5, "expected.npy")
+        self.expected = np.load("expected.npy")
+
+    def test_lines_are_values_and_comments_stay(self):
+        numbers = [str(number) for number in NOISE.tolist()]
+        numbers[3] = f"  {numbers[3]} # a vertex\xe9"
+        lines = ["# mm", "", *numbers, "# the end"]
+        self.write("a.txt", "\r\n".join(lines).encode("latin-1"))
+        self.succeed("smooth", "lh.surf.gii", "a.txt", 5, "b.txt")
+        written = Path("b.txt").read_bytes().decode("latin-1").split("\r\n")
+        self.assertEqual((written[:2], written[-1]), (lines[:2], lines[-1]))
+        self.assertRegex(written[5], "^  [0-9.]+ # a vertex\xe9$")
+        np.testing.assert_allclose(read_data("b.txt").parts[0].values[:, 0], self.expected, rtol=1e-6)
+
+    def test_an_output_is_text_by_its_name(self):
+        self.succeed("smooth", "lh.surf.gii", "a.npy", 5, "b.txt")
+        np.testing.assert_array_equal(np.loadtxt("b.txt", dtype=np.float32), self.expected)
+        self.succeed("smooth", "lh.surf.gii", "b.txt", 5, "c.shape.gii")
+        self.succeed("smooth", "lh.surf.gii", "expected.npy", 5, "c.npy")
+        np.testing.assert_allclose(read_data("c.shape.gii").parts[0].values[:, 0], np.load("c.npy"), rtol=1e-6)
+        np.save("two.npy", np.column_stack([SMOOTH, NOISE]))
+        self.succeed("smooth", "lh.surf.gii", "two.npy", 5, "b.txt", "--column", 2)
+        np.testing.assert_array_equal(np.loadtxt("b.txt", dtype=np.float32), self.expected)
+        self.succeed("distance", "lh.surf.gii", "d.txt", "--from", 0)
+        self.assertEqual(np.loadtxt("d.txt").shape, (N,))
+
+    def test_values_at_faces_and_missing_ones(self):
+        values = POINTS[FACES].mean(axis=1)[:, 2]
+        values[7] = np.nan
+        self.write("f.txt", "".join(f"{z}\n" for z in values))
+        self.succeed("inpaint", "lh.surf.gii", "f.txt", "o.txt", "--faces")
+        found = np.loadtxt("o.txt")
+        self.assertTrue(np.isfinite(found).all())
+        np.testing.assert_array_equal(np.delete(found, 7), np.delete(values, 7))
+
+    def test_interpolate_takes_a_number_per_vertex(self):
+        self.write("a.txt", "".join(f"{z if i % 4 == 0 else 'nan'}\n" for i, z in enumerate(SMOOTH)))
+        np.save("a.npy", np.where(np.arange(N) % 4 == 0, SMOOTH, np.nan))
+        for name in ("a.txt", "a.npy"):
+            self.succeed("interpolate", "lh.surf.gii", name, name.replace("a", "out", 1), "--exact")
+        np.testing.assert_allclose(np.loadtxt("out.txt"), np.load("out.npy"), rtol=1e-6)
 
 
 class Names(FormatTest):

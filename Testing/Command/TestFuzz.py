@@ -48,6 +48,7 @@ def write_good_files(folder):
     samples.write_label(path("a.label"), np.arange(20), np.arange(20))
     samples.write_annot(path("lh.aparc.annot"), np.arange(N) % 3, ["a", "b", "c"])
     np.save(path("a.npy"), SMOOTH)
+    path("a.txt").write_text("\n".join(map(str, SMOOTH)))
     path("a.off").write_text(samples.off_text())
     path("a.obj").write_text(samples.obj_text())
     path("binary.ply").write_bytes(samples.ply_bytes())

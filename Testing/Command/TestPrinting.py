@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""`texture` makes parts for printing: from STL to STL, 3MF, OBJ and PLY, in one line."""
+"""`texture` makes parts for printing: from STL to STL, 3MF, OBJ, OFF and PLY, in one line."""
 
 import json
 import os
@@ -91,12 +91,12 @@ class Printing(unittest.TestCase):
         self.assertEqual(Path("out.stl").read_bytes(), first)
 
     def test_all_formats_have_the_same_part(self):
-        for name in ("out.stl", "out.3mf", "out.obj", "out.ply"):
+        for name in ("out.stl", "out.3mf", "out.obj", "out.off", "out.ply"):
             self.succeed(f"texture part.stl 8mm {name} --relief 0.5mm --steps 40")
         points, triangles, unit = read_3mf("out.3mf")
         self.assertEqual(unit, "millimeter")
         self.assertTrue(is_closed(triangles))
-        for name in ("out.stl", "out.obj", "out.ply"):
+        for name in ("out.stl", "out.obj", "out.off", "out.ply"):
             other = read_surface(name)
             self.assertEqual(len(other.faces), len(triangles))
             np.testing.assert_allclose(other.points[other.faces], points[triangles], atol=1e-5)
@@ -104,6 +104,8 @@ class Printing(unittest.TestCase):
                            if line.startswith("v ")], dtype=float)
         self.assertEqual(shades.shape, (len(points), 3))
         self.assertEqual((shades.min(), shades.max()), (0, 1))
+        words = [line.split() for line in Path("out.off").read_text().splitlines()[2:2 + len(points)]]
+        np.testing.assert_allclose(np.array(words, dtype=float)[:, 3:6] / 255, shades, atol=1e-4)
 
     def test_refine_shortens_edges_and_takes_data_along(self):
         points, triangles = box()
@@ -114,6 +116,9 @@ class Printing(unittest.TestCase):
         surface, found = read_surface("fine.ply"), np.load("fine.npy")
         self.assertTrue(is_closed(surface.faces))
         np.testing.assert_array_equal(found[:, 0], surface.points[:, 0])
+        self.succeed("refine box.ply 3 fine.off")
+        np.testing.assert_array_equal(read_surface("fine.off").points, surface.points)
+        np.testing.assert_array_equal(read_surface("fine.off").faces, surface.faces)
         corners = surface.points[surface.faces]
         self.assertLessEqual(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(), 3)
         self.succeed("refine box.ply 0.1 few.stl --maximum-triangles 500",
@@ -121,7 +126,7 @@ class Printing(unittest.TestCase):
                      "--maximum-triangles is 500")
         self.assertLessEqual(len(read_surface("few.stl").faces), 500)
         for line, pattern in (("box.ply 0 fine.ply", ".*"),
-                              ("box.ply 1 fine.off", "fine.off: the name announces no format of surfaces.*"),
+                              ("box.ply 1 fine.xyz", "fine.xyz: the name announces no format of surfaces.*"),
                               ("box.ply 1 fine.ply --data x.npy y.txt", "y.txt: the name announces no .*"),
                               ("box.ply 1 fine.ply --data part.stl y.npy", "part.stl: .*")):
             code, out, error = run("refine", *line.split())
@@ -160,7 +165,7 @@ class Printing(unittest.TestCase):
                 ("part.stl 60mm out.stl --relief 1mm",
                  "FEATURE_SIZE is 60 mm, but the part is 41.57 mm from corner to corner; allowed: .*"),
                 ("part.stl 4mm out.stl", "out.stl: without relief nothing .*; allowed: --relief .*"),
-                ("part.stl 4mm out.off --relief 1mm", "out.off: the name announces no format .*"),
+                ("part.stl 4mm out.xyz --relief 1mm", "out.xyz: the name announces no format .*"),
                 ("part.stl 4furlongs out.stl --relief 1mm", ".*'4furlongs'; allowed: a length above 0.*"),
                 ("part.stl -4mm out.stl --relief 1mm", ".*"),
                 ("part.stl 4mm out.stl --relief mm", ".*is 'mm'; allowed: a length.*"),

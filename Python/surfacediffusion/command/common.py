@@ -21,24 +21,25 @@ ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "fac
 
 SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata."
 
-FILES = f"""
-{SURFACES}
-DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left, --right and
---cerebellum instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), or \
-a PLY or VTK
-file with data at its vertices; with --faces, where there is that option, at the faces. Files are
-recognised by their content, and may be compressed by gzip, or pipes. OUTPUT has the format and the
-metadata of DATA; that of a FreeSurfer curv may be named .mgh or .shape.gii, too. NaN means \
-missing: the value is not used, and the output has a value there.
-"""
-
 #: The formats of new data at the vertices
-NEW_FORMATS = ".func.gii, .shape.gii, .mgh, .mgz, .npy, or .ply, .vtk, .vtp if SURFACE is such a file"
+NEW_FORMATS = (".func.gii, .shape.gii, .mgh, .mgz, .npy, .txt for one column, or .ply, .vtk, .vtp if SURFACE is "
+               "such a file")
 
 
 def paragraph(text, width):
     return textwrap.fill(text, width) + "\n"
 
+
+FILES = f"""
+{SURFACES}
+""" + paragraph(
+    "DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left, --right and "
+    "--cerebellum instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), text with "
+    "one number per line (.txt; # starts a comment), or a PLY or VTK file with data at its vertices; with "
+    "--faces, where there is that option, at the faces. Files are recognised by their content, and may be "
+    "compressed by gzip, or pipes. OUTPUT has the format and the metadata of DATA, and its name the extension "
+    "of that format. DATA of a FreeSurfer curv, NumPy or text file have no metadata: their OUTPUT may be "
+    f"{NEW_FORMATS}, too. NaN means missing: the value is not used, and the output has a value there.", 98)
 
 NEW = "\n" + paragraph(f"The name of OUTPUT gives its format: {NEW_FORMATS}.", 96)
 

@@ -14,8 +14,8 @@ from .report import number
 from .stages import read_surface_for_output, solid, write_new
 
 SOURCES = f"""
-SOURCES: GIFTI, FreeSurfer (.label, curv, .mgh, ...), NumPy (.npy), or a PLY or VTK file with data. NaN is
-no source.{common.NEW}"""
+SOURCES: GIFTI, FreeSurfer (.label, curv, .mgh, ...), NumPy (.npy), text (.txt), or a PLY or VTK file with
+data. NaN is no source.{common.NEW}"""
 
 
 def add_distance(commands):

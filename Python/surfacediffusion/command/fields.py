@@ -53,7 +53,7 @@ def add_surrogates(commands):
         "relation. Missing values stay missing.",
         ["lh.white lh.thickness null.func.gii --cortex --count 1000"], f"""
 {common.SURFACES}
-DATA: GIFTI, FreeSurfer (curv, .mgh, ...), NumPy (.npy), or a PLY or VTK file with data.
+DATA: GIFTI, FreeSurfer (curv, .mgh, ...), NumPy (.npy), text (.txt), or a PLY or VTK file with data.
 {common.NEW}""")
     common.surface_and_data(parser)
     common.output(parser, "the surrogates, one column each; NaN outside")

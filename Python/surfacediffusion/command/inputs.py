@@ -123,6 +123,8 @@ def _read_table(path):
                                 ) from None
             names = words
             continue
+        if len(row) == 1 and not rows and not names:  # a value for each vertex
+            return None
         width = len(rows[0]) if rows else len(names) or len(row)
         if len(row) != width or width < 4:
             raise FileError(f"{path}: line {i} has {len(row)} numbers; allowed: x, y, z and as many "

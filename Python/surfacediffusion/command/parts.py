@@ -14,7 +14,7 @@ from .report import number
 from .stages import given, read_surface_for_output, require_array, solid, write_array, write_new
 
 REFINE = """
-The name of OUTPUT gives its format: .ply, .obj, .stl or .3mf. NEW is .npy: a row per vertex of OUTPUT,
+The name of OUTPUT gives its format: .ply, .off, .obj, .stl or .3mf. NEW is .npy: a row per vertex of OUTPUT,
 those of SURFACE first.
 """
 
@@ -23,8 +23,8 @@ Lengths may have a unit: 4mm, 0.2cm, 0.1in, 300um. Files of surfaces name no uni
 SURFACE.
 
 """ + common.paragraph(
-    "The name of OUTPUT gives its format. .stl and .3mf are parts for printing and need --relief; .obj "
-    "and .ply have the pattern as grey values, too. For these, vertices at the same place become one, "
+    "The name of OUTPUT gives its format. .stl and .3mf are parts for printing and need --relief; .obj, "
+    ".off and .ply have the pattern as grey values, too. For these, vertices at the same place become one, "
     "and edges are bisected to 8 per FEATURE_SIZE, so that CAD files with few triangles do. "
     f"{common.NEW_FORMATS}, are the pattern at the vertices of SURFACE as they are.", 103)
 
@@ -93,7 +93,7 @@ def add_texture(commands):
                         help="the unit of the coordinates of SURFACE (default mm)")
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--pattern", choices=tuple(PATTERNS),
-                      help="the pattern (default for .stl, .3mf, .obj and with --relief: labyrinth)")
+                      help="the pattern (default for .stl, .3mf, .obj, .off and with --relief: labyrinth)")
     kind.add_argument("--kinetics", metavar="NAME",
                       help="the reaction: Turing (default), Schnakenberg, GrayScott, Brusselator, "
                            "GiererMeinhardt or FitzHughNagumo")

@@ -27,7 +27,7 @@ def reaction_of_pattern(pattern):
 def is_for_printing(arguments):
     """Whether the output of the command texture is a surface, and not values at its vertices."""
     kind = kind_of_export(arguments.output)
-    return arguments.relief is not None or kind in ("stl", "3mf", "obj")
+    return arguments.relief is not None or kind in ("stl", "3mf", "obj", "off")
 
 
 def print_texture(arguments, surface, report):
@@ -36,10 +36,10 @@ def print_texture(arguments, surface, report):
     kind = kind_of_export(arguments.output)
     if kind is None:
         raise ArgumentProblem(f"{arguments.output}: the name announces no format for a part with relief; "
-                              "allowed: .stl, .3mf, .obj or .ply")
+                              "allowed: .stl, .3mf, .obj, .off or .ply")
     if arguments.relief is None and kind in ("stl", "3mf"):
         raise ArgumentProblem(f"{arguments.output}: without relief nothing of the pattern is in it; "
-                              "allowed: --relief HEIGHT, or .obj or .ply, which have colours")
+                              "allowed: --relief HEIGHT, or .obj, .off or .ply, which have colours")
     if arguments.relief is None:
         for name in ("base", "flank", "overhang"):
             if getattr(arguments, name) is not None:

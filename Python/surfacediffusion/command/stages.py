@@ -41,7 +41,7 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
     with report.timed("read"):
         surfaces, data, columns, patches = read(arguments, missing, content)
         areas = inputs.read_areas(arguments.areas, surfaces)
-        target = _target(data, patches, arguments.output)
+        target, kept = _target(data, columns, patches[0].surface, arguments.output)
     if data.extra:
         report.warn(f"{data.path}: {data.extra}")
     options = {"merge_coincident_points": True} if getattr(arguments, "merge", False) else {}
@@ -66,7 +66,7 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
             _add_totals(report, data, columns, patch, new, areas)
     target.labels = labels
     with report.timed("write"):
-        target.save(arguments.output, results, columns)
+        target.save(arguments.output, results, kept)
     report.facts.update(data=data.path, output=arguments.output)
     what = counted(len(columns), "column")
     if say is not None:
@@ -74,13 +74,14 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
     report.say_written(arguments.output, what)
 
 
-def _target(data, patches, path):
-    """What is written: DATA with other values, or of a curv file, which has no metadata, the format that
-    the name of the output announces."""
-    if data.kind == "curv" and kind_of_name(path) not in (None, "curv"):
-        return new_data(patches[0].surface, path, data.names)
+def _target(data, columns, surface, path):
+    """What is written, and which of its columns: DATA with other values, or, since files without metadata
+    have nothing else to keep, the format that the name of the output announces."""
+    if data.kind in ("curv", "npy", "text") and not data.on_faces and kind_of_name(path) not in (
+            None, data.kind):
+        return new_data(surface, path, [data.names[c] for c in columns]), None
     data.check_name(path)
-    return data
+    return data, columns
 
 
 def all_columns(data, columns, patch):

@@ -19,16 +19,19 @@ from dataclasses import dataclass
 NAMES = {
     "gifti": "GIFTI", "cifti": "CIFTI", "nifti": "NIfTI", "mgh": "FreeSurfer mgh",
     "freesurfer": "FreeSurfer surface", "curv": "FreeSurfer curv", "label": "FreeSurfer label",
-    "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY", "stl": "STL", "vtk": "VTK legacy", "vtp": "VTK XML",
-    "npy": "NumPy npy",
+    "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY", "stl": "STL", "vtk": "VTK legacy",
+    "vtp": "VTK XML", "npy": "NumPy npy", "text": "text",
 }
 
-# The ends of names by which an output that is named like another format is noticed.
+# The ends of names by which an output that is named like another format, or like none, is noticed.
 EXTENSIONS = {
     ".gii": "gifti", ".mgh": "mgh", ".mgz": "mgh", ".label": "label", ".off": "off", ".obj": "obj",
     ".ply": "ply", ".stl": "stl", ".vtk": "vtk", ".vtp": "vtp", ".npy": "npy", ".nii": "nifti",
-    ".annot": "annot",
+    ".annot": "annot", ".txt": "text",
 }
+
+# Files of FreeSurfer have names such as lh.thickness.fwhm10, whose ends say nothing of the format.
+_NAMED_FREELY = ("curv", "freesurfer")
 
 # CIFTI names say what the rows are: .dscalar.nii, .dtseries.nii, ...
 _CIFTI_NAME = re.compile(r"\.([dp][a-z]+)\.nii$")
@@ -176,6 +179,8 @@ def _find_text_kind(data):
         return "stl"
     if re.search(rb"(?:^|[\r\n])[ \t]*v[ \t]+[-+.\d]", data):
         return "obj"
+    if re.compile(rb"[-+]?(\.?\d|nan\b|inf\b)", re.IGNORECASE).match(data, start):
+        return "text"
     return None
 
 
@@ -234,9 +239,13 @@ def check_output_name(path, kind, rows=""):
                             "format of the input")
         if announced == "nifti":
             return
-    text = re.search(r"\.(csv|tsv|txt|json|xlsx?)$", os.fspath(path).lower())
-    if text and announced is None:
-        raise FileError(f"{path}: named .{text[1]}, but it is written as {NAMES[kind]}, the format of the input")
+    name = re.sub(r"\.gz$", "", os.path.basename(os.fspath(path)).lower())
+    extension = os.path.splitext(name)[1]
+    is_free = kind in _NAMED_FREELY and not re.fullmatch(r"\.(csv|tsv|json|xlsx?)", extension)
+    if extension and announced is None and not is_free:
+        own = ", ".join(end for end, named in EXTENSIONS.items() if named == kind) or "no extension"
+        raise FileError(f"{path}: {extension} names no format of files; allowed: {own}, since it is written as "
+                        f"{NAMES[kind]}, the format of the input")
     if announced not in (None, kind):
         raise FileError(f"{path}: named as {NAMES[announced]}, but it is written as {NAMES[kind]}, "
                         "the format of the input")

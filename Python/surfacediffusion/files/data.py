@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -16,7 +17,8 @@ from .content import Content, check_output_name, kind_of_name, read_content, rea
 from .content import NAMES, FileError, write_atomically
 
 ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dtseries.nii), "
-           "FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), PLY, VTK polydata, NumPy (.npy)")
+           "FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), PLY, VTK polydata, NumPy (.npy), "
+           "text with one number per line (.txt)")
 
 NO_VERTICES = ("an STL file numbers no vertices, so that values at vertices belong to none; allowed: "
                "values at faces, or a surface of another format")
@@ -123,7 +125,7 @@ def read_data(path, on_faces=False) -> Data:
     known = _FORMATS.get(content.kind)
     if on_faces and not (known and known.on_faces):
         raise content.error(f"a {content.name} file, which has no data at faces; allowed: GIFTI, "
-                            ".mgh, .mgz, .nii.gz, .npy, VTK polydata")
+                            ".mgh, .mgz, .nii.gz, .npy, .txt, VTK polydata")
     if known is None:
         raise content.error(f"a {content.name} file, which has no data at vertices; "
                             f"allowed: {ALLOWED}")
@@ -156,8 +158,8 @@ def new_data(surface, path, names) -> Data:
         return Data(surface.path, kind, list(names), [Part(values)], usual=usual,
                     image=(surface.image, [(name, 0) for name in names]))
     make = _FORMATS[kind].new if kind in _FORMATS else None
-    if make is None:
-        allowed = ".func.gii, .shape.gii, .mgh, .mgz, .npy"
+    if make is None or (kind == "text" and len(names) > 1):
+        allowed = ".func.gii, .shape.gii, .mgh, .mgz, .npy" + ", .txt" * (len(names) == 1)
         if surface.kind in ("ply", "vtk", "vtp"):
             allowed += f", .{surface.kind} as the surface"
         raise FileError(f"{path}: the name announces no format for {len(names)} column(s) at "
@@ -270,6 +272,36 @@ def _write_npy(data, values, columns):
     return file.getvalue()
 
 
+# ---- text: one number per line, and comments from # to the end of a line ----------------------------
+
+_NUMBER = re.compile(r"\s*([^\s#]+)")
+
+
+def _read_text(content):
+    lines = [line.decode("latin-1") for line in
+             content.bytes.removeprefix(b"\xef\xbb\xbf").splitlines(keepends=True)]
+    values = []
+    for number, line in enumerate(lines, start=1):
+        text = line.split("#", 1)[0].strip()
+        try:
+            values += [float(text)] if text else []
+        except ValueError:
+            raise content.error(f"line {number} is {text[:40]!r}; allowed: one number per line, and comments "
+                                "after #") from None
+    return Data(content.path, content.kind, ["text"], [Part(np.array(values)[:, None])], image=lines)
+
+
+def _new_text(surface, names):
+    return ["0\n"] * len(surface.points)
+
+
+def _write_text(data, values, columns):
+    new = map(str, np.asarray(values[0])[:, 0])
+    lines = [line[:found.start(1)] + next(new) + line[found.end(1):]
+             if (found := _NUMBER.match(line)) else line for line in data.image]
+    return "".join(lines).encode("latin-1")
+
+
 # ---- meshes with data ----------------------------------------------------------------------------
 
 # Vertex properties of PLY that are no data: normals, texture coordinates and opacity.
@@ -364,6 +396,7 @@ _FORMATS = {
     "annot": _Format(_read_annot),
     "label": _Format(_read_label, _write_label),
     "npy": _Format(_read_npy, _write_npy, new=_new_npy, on_faces=True),
+    "text": _Format(_read_text, _write_text, new=_new_text, on_faces=True),
     "ply": _Format(_read_ply, _write_ply),
     "vtk": _Format(_read_vtk, _write_vtk, on_faces=True),
     "vtp": _Format(_read_vtk, _write_vtk, on_faces=True),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""New files of a surface, for printers and viewers: STL, 3MF, OBJ and PLY. The same surface gives the
+"""New files of a surface, for printers and viewers: STL, 3MF, OBJ, OFF and PLY. The same surface gives the
 same bytes."""
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attrib
 
 
 def kind_of_export(path):
-    """"stl", "3mf", "obj" or "ply" by the name; None for others."""
+    """"stl", "3mf", "obj", "off" or "ply" by the name; None for others."""
     kind = os.path.splitext(os.fspath(path).lower())[1][1:]
     return kind if kind in _WRITERS else None
 
@@ -52,6 +52,14 @@ def _obj(points, triangles, colors, unit):
     else:
         vertices = _lines("v %.9g %.9g %.9g %.4g %.4g %.4g", np.hstack([points, colors / 255]))
     return (vertices + _lines("f %d %d %d", triangles + 1)).encode()
+
+
+def _off(points, triangles, colors, unit):
+    if colors is None:
+        head, vertices = "OFF", _lines("%.9g %.9g %.9g", points)
+    else:
+        head, vertices = "COFF", _lines("%.9g %.9g %.9g %d %d %d 255", np.hstack([points, colors]))
+    return (f"{head}\n{len(points)} {len(triangles)} 0\n" + vertices + _lines("3 %d %d %d", triangles)).encode()
 
 
 def _ply(points, triangles, colors, unit):
@@ -118,4 +126,4 @@ def _lines(template, rows):
     return "".join(map((template + "\n").__mod__, map(tuple, rows.tolist())))
 
 
-_WRITERS = {"stl": _stl, "3mf": _3mf, "obj": _obj, "ply": _ply}
+_WRITERS = {"stl": _stl, "3mf": _3mf, "obj": _obj, "off": _off, "ply": _ply}

@@ -79,7 +79,7 @@ def _check_sizes(data):
     compressed = b"compressor=" in root[0]
     appended = re.search(rb"<AppendedData\b[^>]*>\s*_", data)
     for array in re.finditer(rb"<DataArray\b[^>]*>", data[:appended.start() if appended else None]):
-        offset = re.search(rb'offset="(\d{1,18})"', array[0])
+        offset = re.search(rb'offset="\s*\+?(\d{1,18})', array[0])  # digits count up to another character
         if b'"binary"' in array[0]:
             start, raw = array.end(), False
         elif b'"appended"' in array[0] and offset and appended:
