@@ -252,6 +252,26 @@ CASES = [
     ("fwhm lh.surf.gii short.func.gii", "short.func.gii: "),
     ("info random", "random: a file of unknown kind"),
     ("info lh.surf.gii none", "none: cannot be read"),
+    # options without effect
+    (DATA.format("lh.func.gii") + " --residuals lh.func.gii", "--residuals without --to-fwhm; allowed: both"),
+    (DATA.format("lh.func.gii") + " --to-fwhm --steps 3", "--steps with --to-fwhm; allowed: one of them"),
+    (DATA.format("lh.func.gii") + " --to-fwhm --merge", "--merge with --to-fwhm; allowed: one of them"),
+    (DATA.format("lh.func.gii") + " --to-fwhm --faces", "--faces with --to-fwhm; allowed: data at vertices"),
+    (DATA.format("lh.func.gii") + " --surface-only", "--surface-only with lh.func.gii, which has no voxels; "
+     "allowed: CIFTI files"),
+    (DATA.format("lh.func.gii") + " --volume-fwhm 3", "--volume-fwhm with lh.func.gii, which has no voxels"),
+    (DATA.format("lh.func.gii") + " --match-columns", "--match-columns without --roi; allowed: both"),
+    (CIFTI.format("a.dscalar.nii") + " --residuals lh.func.gii", "--residuals without --to-fwhm"),
+    (CIFTI.format("a.dscalar.nii") + " --faces", "--faces with the CIFTI file a.dscalar.nii; allowed: data at vert"),
+    (CIFTI.format("a.dscalar.nii") + " --to-fwhm --surface-only", "--surface-only with --to-fwhm"),
+    (CIFTI.format("a.dscalar.nii") + " --surface-only --merged-volume", "--merged-volume with --surface-only"),
+    ("edges lh.surf.gii lh.func.gii out.func.gii --threshold 1 --noise 1", "--noise with --threshold or --length; "
+     "allowed: without them"),
+    ("segment lh.surf.gii lh.func.gii out.func.gii --means 1 2 --seed 1", "--seed with --means; allowed: one of"),
+    ("interpolate lh.surf.gii lh.func.gii out.func.gii --within 2", "--within with values at vertices, in "
+     "lh.func.gii; allowed: a table of points"),
+    ("texture lh.surf.gii 5 out.func.gii --base 1", "--base without --relief; allowed: both"),
+    ("texture lh.surf.gii 5 out.obj --overhang 30", "--overhang without --relief; allowed: both"),
     # outputs
     ("smooth lh.surf.gii lh.func.gii 5 out.csv", "out.csv: .csv names no format of files; allowed: .gii, since "
      "it is written as GIFTI, the format of the input"),

@@ -124,7 +124,7 @@ class ToSmoothness(WorkbenchTest):
         for words, expected in (
                 ([3, "out.npy", "--to-fwhm"], "the noise has a smoothness of"),
                 ([12, "out.npy", "--residuals", "maps.npy"], "--residuals without --to-fwhm"),
-                ([12, "out.npy", "--to-fwhm", "--faces"], "--to-fwhm with --faces")):
+                ([12, "out.npy", "--to-fwhm", "--faces"], "--faces with --to-fwhm")):
             code, _, error = run("smooth", "lh.surf.gii", "maps.npy", *words)
             self.assertEqual((code, error.count("\n")), (2, 1), error)
             self.assertIn(expected, error)

@@ -146,6 +146,16 @@ class Smooth(CommandTest):
         expected = heat(right, NOISE, fwhm=5, **ONE_STEP)
         np.testing.assert_array_equal(found[1, len(left):], expected)
 
+    def test_split_vertices_of_cifti_surfaces_are_joined_on_request(self):
+        split = FACES.ravel()
+        samples.write_surface("soup.surf.gii", POINTS[split], np.arange(len(split)).reshape(-1, 3))
+        models = nib.cifti2.BrainModelAxis.from_surface(np.arange(len(split)), len(split), "CORTEX_LEFT")
+        header = nib.cifti2.Cifti2Header.from_axes((nib.cifti2.ScalarAxis(["one"]), models))
+        nib.save(nib.cifti2.Cifti2Image(NOISE[split][None], header), "soup.dscalar.nii")
+        self.succeed("smooth soup.dscalar.nii 5 out.dscalar.nii --left soup.surf.gii --merge")
+        self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii --column one")
+        np.testing.assert_allclose(self.column("out.dscalar.nii"), self.column("out.func.gii")[split], atol=1e-5)
+
     def test_freesurfer_files(self):
         samples.write_surface("lh.white")
         samples.write_curv("lh.thickness", NOISE)

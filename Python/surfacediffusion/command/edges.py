@@ -85,6 +85,8 @@ def add_edges(commands):
 def edges(arguments, report):
     options = given(edge_threshold=arguments.threshold, smoothing_length=arguments.length,
                     edge_width=arguments.width, noise_level=arguments.noise)
+    if arguments.threshold or arguments.length:
+        inputs.refuse(arguments, ["--noise"], "with --threshold or --length", "without them")
     for name in (arguments.map, arguments.curves):
         if name is not None:
             check_output_folder(name)
@@ -133,6 +135,7 @@ def add_segment(commands):
                         help="the mean of each region, for data of one component, in place of "
                              "--regions. Default: they are found")
     common.seed(parser, "of the search for means")
+    parser.set_defaults(seed=None)
 
 
 def segment(arguments, report):
@@ -142,11 +145,12 @@ def segment(arguments, report):
             raise inputs.ArgumentProblem(f"--regions is {arguments.regions}, but --means has "
                                          f"{len(arguments.means)} numbers; allowed: the same number, "
                                          "or --means alone")
+        inputs.refuse(arguments, ["--seed"], "with --means", "one of them")
         options.update(means=arguments.means, number_of_regions=len(arguments.means))
     found = report.facts.setdefault("segmentations", [])
 
     def compute(surface, values, **run):
-        result = find_regions(surface, values, seed=arguments.seed, **options, **run)
+        result = find_regions(surface, values, seed=arguments.seed or 0, **options, **run)
         rows = [{"region": k + 1, "area": number(result.areas[k]),
                  "boundary_length": number(result.boundary_lengths[k]),
                  "components": int(result.components[k]),

@@ -89,6 +89,8 @@ def interpolate(arguments, report):
         check_output_folder(arguments.error)
     with report.timed("read"):
         places, values, names = inputs.read_values(arguments.values, surface)
+    if places is None:
+        inputs.refuse(arguments, ["--within"], f"with values at vertices, in {arguments.values}", "a table of points")
     target = new_data(surface, arguments.output, names)
     errors = new_data(surface, arguments.error, names) if arguments.error else None
     with report.working("Interpolation") as progress:

@@ -124,8 +124,8 @@ def _surface_place(entry, part, surface, areas, width, arguments):
         excluded[entry.vertices[inside]] = False
         mask = excluded if excluded.any() else None
         return heat(solver, full, mask=mask, mask_mode="Exclude", fwhm=width,
-                    time_integrator="Exponential",
-                    number_of_time_steps=arguments.steps)[entry.vertices]
+                    time_integrator="Exponential", number_of_time_steps=arguments.steps,
+                    merge_coincident_points=getattr(arguments, "merge", False))[entry.vertices]
 
     def measure(inside):
         excluded = np.ones(solver.n_points, dtype=bool)

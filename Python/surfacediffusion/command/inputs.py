@@ -47,6 +47,13 @@ class Patch:
         return values if self.part.vertices is None else values[self.part.vertices]
 
 
+def refuse(arguments, options, where, allowed):
+    """ArgumentProblem if one of the options is given, which has no effect beside something else."""
+    for option in options:
+        if getattr(arguments, option.strip("-").replace("-", "_"), None) not in (None, False):
+            raise ArgumentProblem(f"{option} {where}; allowed: {allowed}")
+
+
 def read_surfaces(arguments):
     """{structure: surface}; the structure is "" for SURFACE, which takes any data. They are read once for
     many files."""

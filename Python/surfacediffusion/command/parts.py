@@ -103,6 +103,8 @@ def add_texture(commands):
 
 def texture(arguments, report):
     surface = read_surface_for_output(arguments, report)
+    if arguments.relief is None:
+        inputs.refuse(arguments, ["--base", "--flank", "--overhang"], "without --relief", "both")
     if is_for_printing(arguments):
         print_texture(arguments, surface, report)
         return

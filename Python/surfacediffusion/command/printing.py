@@ -40,10 +40,6 @@ def print_texture(arguments, surface, report):
     if arguments.relief is None and kind in ("stl", "3mf"):
         raise ArgumentProblem(f"{arguments.output}: without relief nothing of the pattern is in it; "
                               "allowed: --relief HEIGHT, or .obj, .off or .ply, which have colours")
-    if arguments.relief is None:
-        for name in ("base", "flank", "overhang"):
-            if getattr(arguments, name) is not None:
-                raise ArgumentProblem(f"--{name} is given, but no relief; allowed: with --relief HEIGHT")
     unit = arguments.unit
     lengths = {}
     for name in ("size", "relief", "base", "flank"):

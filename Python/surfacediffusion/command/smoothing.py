@@ -128,7 +128,7 @@ def _areas_and_steps(parser):
                              "SURFACE: for a surface that is the average of many")
     common.steps(parser, "number of time steps (default 1, which is within 0.5 %% of the exact "
                          "result for white noise at any width, 1 %% for data at faces; values may "
-                         "leave their range by 5e-4 of it)", 1)
+                         "leave their range by 5e-4 of it)")
 
 
 def _kernels_are_fwhm(parser, text):
@@ -140,13 +140,13 @@ def smooth(arguments, report):
 
 
 def _smooth_file(arguments, report):
-    width = _width(arguments, report)
     content = read_content(arguments.data)
+    _check_options(arguments, content)
+    arguments.steps = arguments.steps or 1
+    width = _width(arguments, report)
     if content.kind == "cifti" and not arguments.to_fwhm:
         _smooth_grayordinates(arguments, report, content, width)
         return
-    if arguments.residuals and not arguments.to_fwhm:
-        raise inputs.ArgumentProblem("--residuals without --to-fwhm; allowed: both")
 
     def compute(surface, values, **run):
         return heat(surface, values, on_faces=arguments.faces, fwhm=width, time_integrator="Exponential",
@@ -157,15 +157,29 @@ def _smooth_file(arguments, report):
         return smooth_to_fwhm(surface, values, width, residuals=noise, mask=mask)
 
     if arguments.to_fwhm:
-        if arguments.faces:
-            raise inputs.ArgumentProblem("--to-fwhm with --faces; allowed: data at vertices")
-        if arguments.merge:
-            raise inputs.ArgumentProblem("--to-fwhm with --merge; allowed: one of them")
         change_data(arguments, report, "Smoothing", reach, all_columns, content=content,
                     say=lambda surface: "smoothed to " + _width_text(width, surface))
         return
     change_data(arguments, report, "Smoothing", compute, columns_of_missing, content=content,
                 say=lambda surface: _width_text(width, surface))
+
+
+def _check_options(arguments, content):
+    """Options that would have no effect are mistakes."""
+    voxels = ("--surface-only", "--volume-fwhm", "--merged-volume")
+    if arguments.to_fwhm:
+        inputs.refuse(arguments, ["--faces"], "with --to-fwhm", "data at vertices")
+        inputs.refuse(arguments, ["--merge", "--steps", *voxels], "with --to-fwhm", "one of them")
+    else:
+        inputs.refuse(arguments, ["--residuals"], "without --to-fwhm", "both")
+    if content.kind == "cifti":
+        inputs.refuse(arguments, ["--faces"], f"with the CIFTI file {content.path}", "data at vertices")
+    else:
+        inputs.refuse(arguments, voxels, f"with {content.path}, which has no voxels", "CIFTI files")
+    if arguments.surface_only:
+        inputs.refuse(arguments, ["--merged-volume"], "with --surface-only", "one of them")
+    if arguments.roi is None:
+        inputs.refuse(arguments, ["--match-columns"], "without --roi", "both")
 
 
 def smooth_cifti(arguments, report):
