@@ -223,7 +223,13 @@ CASES = [
     ("texture lh.surf.gii 5 out.xyz", "out.xyz: the name announces no format"),
     ("segment lh.surf.gii lh.func.gii out.func.gii --regions 3 --means 1 2", "--regions is 3, but --means has 2 "
      "numbers; allowed: the same number, or --means alone"),
-    ("texture lh.surf.gii 1e-4mm out.stl --relief 1e-5mm", "needs more than 4000000 triangles; allowed: "),
+    ("texture lh.surf.gii 1e-4mm out.stl --relief 1e-5mm", "needs more than 1000000 triangles; allowed: "
+     "[0-9.]+ mm or more, or --maximum-triangles"),
+    ("texture lh.surf.gii 0.1mm out.stl --relief 0.01mm", "needs more than 1000000 triangles"),
+    ("texture lh.surf.gii 3mm out.stl --relief 0.1mm --maximum-triangles 2000", "needs more than 2000 triangles"),
+    ("texture lh.surf.gii 5 out.func.gii --maximum-triangles 9", "--maximum-triangles for values at the vertices"),
+    ("refine lh.surf.gii 1e-4 out.ply", r"LENGTH is 0.0001, for which .* 4000000 triangles; allowed: 0.02\d* or more, "
+     "or --maximum-triangles"),
     ("directions lh.surf.gii out.func.gii", "out.func.gii: the name announces no format"),
     ("curvature lh.surf.gii out.func.gii --fwhm -1", "argument --fwhm: is '-1'"),
     ("distance lh.surf.gii out.npy", "the sources are missing; allowed: one of SOURCES and --from"),
@@ -262,7 +268,7 @@ CASES = [
     (DATA.format("lh.func.gii") + " --volume-fwhm 3", "--volume-fwhm with lh.func.gii, which has no voxels"),
     (DATA.format("lh.func.gii") + " --match-columns", "--match-columns without --roi; allowed: both"),
     (CIFTI.format("a.dscalar.nii") + " --residuals lh.func.gii", "--residuals without --to-fwhm"),
-    (CIFTI.format("a.dscalar.nii") + " --faces", "--faces with the CIFTI file a.dscalar.nii; allowed: data at vert"),
+    (CIFTI.format("a.dscalar.nii") + " --faces", "--faces with the CIFTI file a.dscalar.nii; allowed: data"),
     (CIFTI.format("a.dscalar.nii") + " --to-fwhm --surface-only", "--surface-only with --to-fwhm"),
     (CIFTI.format("a.dscalar.nii") + " --surface-only --merged-volume", "--merged-volume with --surface-only"),
     ("edges lh.surf.gii lh.func.gii out.func.gii --threshold 1 --noise 1", "--noise with --threshold or --length; "

@@ -146,6 +146,13 @@ class Printing(unittest.TestCase):
                      "(?s)FEATURE_SIZE 8 has no unit: taken as 8 mm.*--relief 0.5 has no unit")
         self.assertEqual(Path("a.stl").read_bytes(), Path("d.stl").read_bytes())
 
+    def test_a_part_that_is_finer_than_the_limit_stays_allowed(self):
+        points, triangles = box()
+        export("box.ply", points, triangles)
+        self.succeed("refine box.ply 1 fine.ply")
+        self.succeed("texture fine.ply 8mm out.stl --relief 0.5mm --steps 20 --maximum-triangles 100")
+        self.assertEqual(len(read_surface("out.stl").faces), len(read_surface("fine.ply").faces))
+
     def test_carving_levels_and_overhang(self):
         self.succeed("texture part.stl 8mm out.stl --relief=-0.5mm --flank 1mm --overhang 30 "
                      "--steps 60", "lowered by more than half of that at [0-9]+ of [0-9]+ points")

@@ -90,7 +90,8 @@ def interpolate(arguments, report):
     with report.timed("read"):
         places, values, names = inputs.read_values(arguments.values, surface)
     if places is None:
-        inputs.refuse(arguments, ["--within"], f"with values at vertices, in {arguments.values}", "a table of points")
+        inputs.refuse(arguments, ["--within"], f"with values at vertices, in {arguments.values}",
+                      "a table of points")
     target = new_data(surface, arguments.output, names)
     errors = new_data(surface, arguments.error, names) if arguments.error else None
     with report.working("Interpolation") as progress:

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 from .. import refine as bisect
 from .. import turing_texture
+from .._refinement import MAXIMUM_TRIANGLES
 from ..files import new_data, read_surface
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export
 from . import common, inputs, values
-from .printing import PATTERNS, in_coordinates, is_for_printing, print_texture, reaction_of_pattern
+from .printing import MAXIMUM_TRIANGLES_OF_PARTS, PATTERNS, edge_of_triangles, in_coordinates
+from .printing import is_for_printing, print_texture, reaction_of_pattern
 from .report import number
 from .stages import given, read_surface_for_output, require_array, solid, write_array, write_new
 
@@ -42,8 +44,9 @@ def add_refine(commands):
     parser.add_argument("--data", metavar="FILE", nargs=2, action="append", default=[],
                         help="two files: DATA at the vertices of SURFACE, and NEW for those at the "
                              "vertices of OUTPUT; may be repeated")
-    parser.add_argument("--maximum-triangles", metavar="N", type=values.count, default=4_000_000,
-                        help="refinement stops before there are more, with a warning (default 4000000)")
+    parser.add_argument("--maximum-triangles", metavar="N", type=values.count,
+                        help="refinement stops before there are more, with a warning (default: a LENGTH that "
+                             f"needs more than {MAXIMUM_TRIANGLES} is refused)")
 
 
 def refine(arguments, report):
@@ -53,10 +56,15 @@ def refine(arguments, report):
         require_array(new, "data of the new vertices")
     with report.timed("read"):
         surface = read_surface(arguments.surface)
+        shortest = edge_of_triangles(solid(surface), MAXIMUM_TRIANGLES)
+        if arguments.maximum_triangles is None and arguments.length < shortest:
+            raise inputs.ArgumentProblem(
+                f"LENGTH is {arguments.length:g}, for which the surface needs more than {MAXIMUM_TRIANGLES} "
+                f"triangles; allowed: {1.01 * shortest:.3g} or more, or --maximum-triangles")
         columns = [inputs.read_values(path, surface, tables=False)[1] for path, _ in arguments.data]
     with report.working("Refinement") as progress:
         fine = bisect(solid(surface), arguments.length, progress=progress,
-                      maximum_number_of_triangles=arguments.maximum_triangles)
+                      maximum_number_of_triangles=arguments.maximum_triangles or MAXIMUM_TRIANGLES)
     report.facts.update(longest_edge=number(fine.longest_edge), vertices=fine.surface.n_points,
                         triangles=fine.surface.n_faces)
     with report.timed("write"):
@@ -91,6 +99,10 @@ def add_texture(commands):
                         help="no relief on faces that face down, against z, more steeply than this")
     parser.add_argument("--unit", choices=tuple(UNITS), default="mm",
                         help="the unit of the coordinates of SURFACE (default mm)")
+    parser.add_argument("--maximum-triangles", metavar="N", type=values.count,
+                        help="the largest number of triangles of a part, of which a million take about a "
+                             f"minute (default {MAXIMUM_TRIANGLES_OF_PARTS}); a FEATURE_SIZE that needs more is "
+                             "refused")
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--pattern", choices=tuple(PATTERNS),
                       help="the pattern (default for .stl, .3mf, .obj, .off and with --relief: labyrinth)")
@@ -108,6 +120,7 @@ def texture(arguments, report):
     if is_for_printing(arguments):
         print_texture(arguments, surface, report)
         return
+    inputs.refuse(arguments, ["--maximum-triangles"], "for values at the vertices", "for parts")
     target = new_data(surface, arguments.output, ["Texture"])
     size = in_coordinates(arguments.size, arguments.unit)
     options = given(kinetics=arguments.kinetics, number_of_time_steps=arguments.steps)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import Surface, refine, relief, turing_texture
-from .._refinement import EDGES_PER_WAVELENGTH, FEWEST_EDGES_PER_WAVELENGTH, MAXIMUM_TRIANGLES
+from .._refinement import EDGES_PER_WAVELENGTH, FEWEST_EDGES_PER_WAVELENGTH
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export, kind_of_export
 from .inputs import ArgumentProblem
@@ -14,6 +14,9 @@ from .report import number
 
 #: D1/D2 of the default kinetics for each pattern.
 PATTERNS = {"labyrinth": 18.0, "spots": 5.0, "net": 30.0}
+
+#: Parts with more by default are mistakes of the unit rather than wanted.
+MAXIMUM_TRIANGLES_OF_PARTS = 1_000_000
 
 #: Patterns from a coarser mesh are flatter: more points than by default may have all steps, which take
 #: a minute of processor time at this size.
@@ -51,18 +54,20 @@ def print_texture(arguments, surface, report):
     if not size < extent:
         raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, but the part is {extent:.4g} {unit} "
                               "from corner to corner; allowed: smaller features")
-    smallest = FEWEST_EDGES_PER_WAVELENGTH * _edge_of_triangles(part)
+    most = max(arguments.maximum_triangles or MAXIMUM_TRIANGLES_OF_PARTS, part.n_faces)
+    smallest = FEWEST_EDGES_PER_WAVELENGTH * edge_of_triangles(part, most)
     if size < smallest:
         raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, for which the part, {extent:.4g} {unit} "
-                              f"from corner to corner, needs more than {MAXIMUM_TRIANGLES} triangles; "
-                              f"allowed: {1.01 * smallest:.3g} {unit} or more")
+                              f"from corner to corner, needs more than {most} triangles; "
+                              f"allowed: {1.01 * smallest:.3g} {unit} or more, or --maximum-triangles")
     if height is not None and not abs(height) < extent:
         raise ArgumentProblem(f"--relief is {height:.4g} {unit}, but the part is {extent:.4g} {unit} from "
                               "corner to corner; allowed: less")
     options = {"kinetics": arguments.kinetics} if arguments.kinetics else reaction_of_pattern(
         arguments.pattern or "labyrinth")
     with report.working("Refinement", "refine") as progress:
-        fine = refine(part, size / EDGES_PER_WAVELENGTH, progress=progress).surface
+        fine = refine(part, size / EDGES_PER_WAVELENGTH, progress=progress,
+                      maximum_number_of_triangles=most).surface
     options.update(coarse_start_size=COARSE_START_SIZE, stop_tolerance=0.02)
     options["number_of_time_steps"] = arguments.steps or 2000
     with report.working("Texture", "texture") as progress:
@@ -94,10 +99,10 @@ def print_texture(arguments, surface, report):
     report.say_written(arguments.output, ", ".join(said))
 
 
-def _edge_of_triangles(part):
-    """The edge length of so many triangles as `refine` makes by default, of equal sides."""
-    area = part._triangle_areas().sum()
-    return float(np.sqrt(area / MAXIMUM_TRIANGLES * 4 / np.sqrt(3)))
+def edge_of_triangles(surface, count):
+    """The edge length of so many triangles of equal sides: with as many, a refined surface has longer ones."""
+    area = surface._triangle_areas().sum()
+    return float(np.sqrt(area / count * 4 / np.sqrt(3)))
 
 
 def welded(surface):
