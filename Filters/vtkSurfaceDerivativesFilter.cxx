@@ -31,6 +31,7 @@ bool vtkSurfaceDerivativesFilter::FindFields(
 {
   const InputArrays inputs(this, block, fields, problems);
   fields.Data = inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents);
+  fields.AlphaIsData = true; // there is no result that would have it unchanged
   fields.Mask = inputs.Find(1, "MaskArray", 1);
   return fields.Data.Values != nullptr;
 }

@@ -9,8 +9,9 @@
  * the arrays, updates the run of each surface, and adds its results to the output. A run is kept
  * until its surface, its arrays or the settings change.
  *
- * Each block of composite data is a surface of its own. An array that a block does not have counts
- * as not set there, with a warning, if at least one block has it, and is an error otherwise.
+ * Each block of composite data is a surface of its own. An array that a block does not have, or
+ * that is not numeric there, counts as not set there, with a warning, if at least one block has it,
+ * and is an error otherwise.
  * Surfaces in pieces, over processes and partitions, are gathered and solved in process 0; see
  * vtkSurfaceFilter. The time of the input passes through.
  *

@@ -122,7 +122,7 @@ FieldSummary InputFields::Summarize() const
   summary.Data = this->Data.Values != nullptr;
   if (summary.Data)
   {
-    summary.DataComponents = NumberOfDataComponents(this->Data.Values);
+    summary.DataComponents = NumberOfDataComponents(this->Data.Values, this->AlphaIsData);
     summary.DataName = NameOfData(*this);
   }
   if (this->Samples)
@@ -158,17 +158,17 @@ unsigned int InputFields::Associations() const
   return bits;
 }
 
-int NumberOfDataComponents(vtkDataArray* array)
+int NumberOfDataComponents(vtkDataArray* array, bool alphaIsData)
 {
   const int components = array->GetNumberOfComponents();
-  const bool hasAlpha =
-    array->GetDataType() == VTK_UNSIGNED_CHAR && (components == 2 || components == 4);
+  const bool hasAlpha = !alphaIsData && array->GetDataType() == VTK_UNSIGNED_CHAR &&
+    (components == 2 || components == 4);
   return hasAlpha ? components - 1 : components;
 }
 
-Values ReadValues(vtkDataArray* array)
+Values ReadValues(vtkDataArray* array, bool alphaIsData)
 {
-  const int components = NumberOfDataComponents(array);
+  const int components = NumberOfDataComponents(array, alphaIsData);
   Values values(array->GetNumberOfTuples(), components);
   VisitTuples(array,
     [&](const auto& tuples)
@@ -211,7 +211,7 @@ Fields ReadFields(
   Fields fields;
   if (vtkDataArray* const data = arrays.Data.Values)
   {
-    fields.Data = { ReadValues(data), arrays.Data.OnCells };
+    fields.Data = { ReadValues(data, arrays.AlphaIsData), arrays.Data.OnCells };
     fields.DataName = NameOfData(arrays);
     fields.DataAreTerms = arrays.DataAreTerms;
     fields.DataAreBytes = data->GetDataType() == VTK_UNSIGNED_CHAR;

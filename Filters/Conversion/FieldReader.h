@@ -19,7 +19,7 @@ class vtkPolyData;
 namespace SurfaceDiffusion
 {
 
-/// An array that was chosen and that a block does not have.
+/// A numeric array that was chosen and that a block does not have.
 struct AbsentArray
 {
   int Index; ///< of SetInputArrayToProcess()
@@ -35,6 +35,7 @@ struct InputFields
   std::vector<AbsentArray> Absent;
   vtkSmartPointer<vtkDataArray> NoDirection; ///< zeros: a block without the directions of others
   LocatedArray Data; ///< index 0
+  bool AlphaIsData = false; ///< the last of 2 or 4 unsigned chars of the data is a component, too
   bool DataAreComputed = false; ///< normals that the input does not have
   bool ResultIsNormals = false; ///< the result of the data takes the place of the normals
   LocatedArray Mask; ///< index 1
@@ -59,11 +60,12 @@ struct InputFields
   unsigned int Associations() const;
 };
 
-/// The number of components that are data: the last of 2 or 4 unsigned chars is alpha.
-int NumberOfDataComponents(vtkDataArray* array);
+/// The number of components that are data: unless alphaIsData, the last of 2 or 4 unsigned chars is
+/// alpha, which is none.
+int NumberOfDataComponents(vtkDataArray* array, bool alphaIsData = false);
 
 /// All data components as doubles, one row per tuple.
-Values ReadValues(vtkDataArray* array);
+Values ReadValues(vtkDataArray* array, bool alphaIsData = false);
 
 /// The hash of everything that ReadFields() reads.
 Fingerprint FingerprintFields(const InputFields& arrays);

@@ -132,7 +132,9 @@ LocatedArray InputArrays::Find(int index, const char* property, int components) 
   vtkDataArray* array = vtkDataArray::SafeDownCast(found);
   if (!array)
   {
-    return report(std::string("is a ") + found->GetClassName() + "; allowed: numeric arrays");
+    this->Fields.Absent.push_back(
+      { index, label, label + " is a " + found->GetClassName() + "; allowed: numeric arrays" });
+    return {};
   }
   const vtkIdType tuples =
     isOnCells ? this->Block->GetNumberOfCells() : this->Block->GetNumberOfPoints();
@@ -177,7 +179,7 @@ void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std
     else
     {
       warnings.push_back(absence.Array.Label + " counts as not set on " +
-        ListBlocks(absence.Blocks) + ", without this array");
+        ListBlocks(absence.Blocks) + ", without such a numeric array");
     }
   }
 }

@@ -15,7 +15,8 @@ namespace SurfaceDiffusion
 {
 
 /// Finds the arrays that SetInputArrayToProcess() chose on one block, and lists their problems. An
-/// array that the block does not have is added to the absent ones of `fields`.
+/// array that the block does not have, or that is not numeric, is added to the absent ones of
+/// `fields`.
 class InputArrays
 {
 public:

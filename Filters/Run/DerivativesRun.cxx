@@ -153,10 +153,16 @@ void DerivativesRun::Update(
   }
   this->Results.clear();
   this->MissedResidual = 0.0;
+  this->NothingKnown = Sentence();
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
   const Points positions = VertexPositions(surface);
   const Fields fields = input.ReadFields();
+  if (!this->MissingRows.empty() && surface.NumberOfTriangles() == 0)
+  {
+    this->NothingKnown << fields.DataName
+                       << " is NaN in every triangle that takes part, and so is the result";
+  }
   const Derivatives operators(mesh, positions, this->Parallel);
   this->Turned = operators.Normals().TurnedTriangles;
   progress.Report(0.35);
@@ -311,6 +317,10 @@ std::vector<Warning> DerivativesRun::FindOwnWarnings() const
   std::vector<Warning> warnings;
   AppendTurnedTriangles(this->Turned, warnings);
   AppendMissedResidual(this->MissedResidual, warnings);
+  if (!this->NothingKnown.Words().empty())
+  {
+    warnings.push_back({ this->NothingKnown, this->SurfaceVersion });
+  }
   return warnings;
 }
 

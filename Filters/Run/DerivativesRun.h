@@ -67,6 +67,7 @@ private:
   bool IsMissingKnown = false;
   std::vector<char> MissingRows; ///< per point or cell: not finite; empty if none is
   bool MissingOnCells = false;
+  Sentence NothingKnown; ///< the warning that no triangle has data; otherwise empty
   Index Turned = 0;
   double MissedResidual = 0.0;
 };

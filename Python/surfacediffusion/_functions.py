@@ -1073,6 +1073,7 @@ def find_derivatives(
     name = properties.pop("_name", "values")
     runner = Runner("derivatives", properties, {**ARRAYS, "InputArray": name})
     data, faces = _take(name, values, surface, on_faces)
+    data = data.astype(np.float64) if data.dtype == np.uint8 else data  # no colour, whose alpha is no data
     inputs = Input(surface, data, data_on_faces=faces, mask=left_out(mask, roi, surface))
     outputs, found = _run_once("derivatives", inputs, runner, progress)
     result: DerivativesResult = make_result(DerivativesResult, outputs, {"speed": None, **found})

@@ -13,6 +13,7 @@
 #include "vtkSurfaceDerivativesFilter.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 #include "vtkSurfaceDistanceFilter.h"
+#include "vtkSurfaceReliefFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTuringTextureFilter.h"
 #include "vtkUnstructuredGrid.h"
@@ -90,7 +91,7 @@ TEST(BlockMessages, AMaskThatOneBlockLacksCountsAsNotSetThere)
   EXPECT_EQ(messages.Errors, std::vector<std::string>());
   ASSERT_EQ(messages.Warnings.size(), 1u);
   EXPECT_TRUE(Contains(messages.Warnings,
-    "MaskArray \"mask\" counts as not set on blocks \"tail\", 2/1, without this array"))
+    "MaskArray \"mask\" counts as not set on blocks \"tail\", 2/1, without such a numeric array"))
     << Join(messages.Warnings);
   for (unsigned int b = 0; b < 3; ++b)
   {
@@ -221,18 +222,14 @@ TEST(BlockMessages, ErrorsOfDerivativesNameTheirBlockIfAnotherHasNoData)
 {
   auto blocks = ThreeBlocks();
   BlockOf(blocks, 0)->GetPointData()->RemoveArray("f");
-  vtkNew<vtkStringArray> text;
-  text->SetName("f");
-  text->SetNumberOfValues(30);
-  BlockOf(blocks, 1)->GetPointData()->RemoveArray("f");
-  BlockOf(blocks, 1)->GetPointData()->AddArray(text);
+  BlockOf(blocks, 1)->GetPointData()->AddArray(MakeArray(VTK_DOUBLE, "f", 29, 1, First));
   vtkNew<vtkSurfaceDerivativesFilter> filter;
   filter->SetInputDataObject(blocks);
   SetInputArray(filter, 0, "f");
   Messages messages(filter);
   filter->Update();
   ASSERT_EQ(messages.Errors.size(), 1u);
-  EXPECT_TRUE(Contains(messages.Errors, "block \"tail\": InputArray \"f\" is a vtkStringArray"))
+  EXPECT_TRUE(Contains(messages.Errors, "block \"tail\": InputArray \"f\" has 29 tuples"))
     << Join(messages.Errors);
 }
 
@@ -330,4 +327,41 @@ TEST(BlockMessages, WithoutInputThereIsOneClearLine)
     EXPECT_EQ(messages.Errors.size() + ofExecutive.Errors.size(), 1u);
     EXPECT_EQ(all.find("vtkInformation"), std::string::npos) << all;
   }
+}
+
+/// As a block without the array.
+TEST(BlockMessages, ABlockWhoseArrayIsNotNumericIsLeftOut)
+{
+  const auto update = [](vtkAlgorithm* filter, const char* result)
+  {
+    auto blocks = ThreeBlocks();
+    BlockOf(blocks, 1)->GetPointData()->RemoveArray("f");
+    vtkNew<vtkStringArray> names;
+    names->SetName("f");
+    names->SetNumberOfValues(BlockOf(blocks, 1)->GetNumberOfPoints());
+    BlockOf(blocks, 1)->GetPointData()->AddArray(names);
+    filter->SetInputDataObject(blocks);
+    SetInputArray(filter, 0, "f");
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_EQ(messages.Errors, std::vector<std::string>()) << result;
+    ASSERT_EQ(messages.Warnings.size(), 1u) << result;
+    EXPECT_TRUE(Contains(messages.Warnings, "on block \"tail\", without such a numeric array"))
+      << Join(messages.Warnings);
+    for (unsigned int b = 0; b < 3; ++b)
+    {
+      EXPECT_EQ(OutputOf(filter, b)->GetPointData()->HasArray(result), b != 1) << result << b;
+    }
+    BlockOf(blocks, 0)->GetPointData()->RemoveArray("f");
+    BlockOf(blocks, 2)->GetPointData()->RemoveArray("f");
+    BlockOf(blocks, 0)->GetPointData()->AddArray(names);
+    filter->Modified();
+    filter->Update();
+    EXPECT_EQ(messages.Errors.size(), 1u) << result;
+  };
+  update(vtkNew<vtkSurfaceDerivativesFilter>(), "fGradient");
+  update(vtkNew<vtkSurfaceDistanceFilter>(), "Distance");
+  vtkNew<vtkSurfaceReliefFilter> relief;
+  relief->SetHeight(0.0);
+  update(relief, "ReliefHeight");
 }

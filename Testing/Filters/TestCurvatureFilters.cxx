@@ -205,3 +205,54 @@ TEST(DerivativesFilter, NamesWhatIsNotAllowed)
   filter->SetQuantityToGradient();
   EXPECT_NE(errorOf().find("is infinite at point 5"), std::string::npos) << errorOf();
 }
+
+TEST(DerivativesFilter, OfUnsignedCharsHaveAllComponents)
+{
+  const auto plane = Plane();
+  for (const int components : { 1, 2, 3, 4 })
+  {
+    const auto value = [](vtkIdType i, int k) { return 100.0 + (k + 1.0) * (i % 11) - (i / 11); };
+    plane->GetPointData()->AddArray(
+      MakeArray(VTK_UNSIGNED_CHAR, "c", plane->GetNumberOfPoints(), components, value));
+    plane->GetCellData()->AddArray(MakeArray(VTK_UNSIGNED_CHAR, "c", plane->GetNumberOfCells(),
+      components, [](vtkIdType, int k) { return 10.0 * k; }));
+    vtkNew<vtkSurfaceDerivativesFilter> filter;
+    filter->SetInputData(plane);
+    SetInputArray(filter, 0, "c");
+    filter->Update();
+    vtkDataArray* const gradient = Result(filter, "cGradient");
+    ASSERT_NE(gradient, nullptr);
+    ASSERT_EQ(gradient->GetNumberOfComponents(), 3 * components);
+    for (int k = 0; k < components; ++k)
+    {
+      EXPECT_NEAR(gradient->GetComponent(60, 3 * k), k + 1.0, 1e-12);
+      EXPECT_NEAR(gradient->GetComponent(60, 3 * k + 1), -1.0, 1e-12);
+    }
+    SetInputArray(filter, 0, "c", true);
+    filter->SetQuantityToLaplacian();
+    filter->Update();
+    EXPECT_EQ(Result(filter, "cLaplacian")->GetNumberOfComponents(), components);
+  }
+}
+
+TEST(DerivativesFilter, OfNoKnownValuesAreOneWarning)
+{
+  const auto plane = Plane();
+  AddPointArray(plane, "t", 1, [](vtkIdType, int) { return vtkMath::Nan(); });
+  plane->GetCellData()->AddArray(MakeArray(
+    VTK_DOUBLE, "t", plane->GetNumberOfCells(), 1, [](vtkIdType, int) { return vtkMath::Nan(); }));
+  for (const bool onCells : { false, true })
+  {
+    vtkNew<vtkSurfaceDerivativesFilter> filter;
+    filter->SetInputData(plane);
+    SetInputArray(filter, 0, "t", onCells);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty());
+    ASSERT_EQ(messages.Warnings.size(), 1u);
+    EXPECT_NE(
+      messages.Warnings[0].find("InputArray \"t\" is NaN in every triangle"), std::string::npos)
+      << messages.Warnings[0];
+    EXPECT_TRUE(std::isnan(Result(filter, "tGradient")->GetComponent(5, 0)));
+  }
+}

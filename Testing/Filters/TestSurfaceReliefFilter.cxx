@@ -228,7 +228,7 @@ TEST(SurfaceReliefFilter, KeepsRimsAndPassesBlocksWithoutValues)
   Messages messages(filter);
   filter->Update();
   ASSERT_EQ(messages.Warnings.size(), 1u);
-  EXPECT_NE(messages.Warnings[0].find("without this array"), std::string::npos);
+  EXPECT_NE(messages.Warnings[0].find("without such a numeric array"), std::string::npos);
   EXPECT_EQ(filter->GetOpenEdges(), 32);
   EXPECT_NEAR(filter->GetVolumeChange(), 9.5 * 9.5 * 9.5 - 1000.0, 150.0); // carved edges fade
   EXPECT_LT(filter->GetVolumeChange(), -50.0);

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellTypes, vtkDataObject, vtkDataSe
 
 from .. import _core
 from .._surface import data_components
-from ._surfaces import BETWEEN, GIVEN_CELL, Block, SurfaceError, to_numpy
+from ._surfaces import BETWEEN, GIVEN_CELL, Block, SurfaceError, hidden_points, to_numpy
 
 POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
 ANY = 0  #: number of components
@@ -64,6 +64,7 @@ class Fields:
     data_are_terms: bool = False
     data_are_computed: bool = False  #: normals
     result_is_normals: bool = False
+    alpha_is_data: bool = False
     samples: Samples | None = None
     sources: Sources | None = None
     absent: dict[int, tuple[str, str]] = field(default_factory=dict)  #: index: label, problem
@@ -119,7 +120,8 @@ class ArrayFinder:
             self._fields.absent[index] = (label, f"{label} {self._describe_absence(choice)}")
             return Array()
         if not isinstance(found, vtkDataArray):
-            problems.append(f"{label} is a {found.GetClassName()}; allowed: numeric arrays")
+            problem = f"{label} is a {found.GetClassName()}; allowed: numeric arrays"
+            self._fields.absent[index] = (label, problem)
             return Array()
         tuples = block.GetNumberOfCells() if on_cells else block.GetNumberOfPoints()
         if found.GetNumberOfTuples() != tuples:
@@ -162,7 +164,8 @@ def settle_absence(fields: list[Fields], names: list[str]) -> tuple[list[str], l
         if len(blocks[index]) == len(fields):
             problems.append(problem)
         else:
-            warnings.append(f"{label} counts as not set on {list_blocks(blocks[index])}, without this array")
+            warnings.append(f"{label} counts as not set on {list_blocks(blocks[index])}, without such a "
+                            "numeric array")
     return problems, warnings
 
 
@@ -189,6 +192,7 @@ def make_core(fields: Fields, block: Block) -> None:
     data, places = None, []
     if fields.data.values is not None:
         data = _as_data(fields.data.values)
+        data = data.astype(np.float64) if fields.alpha_is_data else data
         fields.integers = fields.data.values.GetDataType() not in (VTK_FLOAT, VTK_DOUBLE)
     flags = {name: _as_flags(getattr(fields, name).values) for name in ("mask", "fixed")}
     for name, found in (("data", fields.data), ("mask", fields.mask), ("fixed", fields.fixed),
@@ -346,10 +350,8 @@ def read_sources(data: Any) -> tuple[Sources | None, list[str]]:
 
 def _hidden(data: Any) -> NDArray[np.bool_]:
     """Which points are hidden."""
-    flags, count = data.GetPointGhostArray(), data.GetNumberOfPoints()
-    if flags is None or flags.GetNumberOfTuples() != count:
-        return np.zeros(count, dtype=bool)
-    return np.array(to_numpy(flags) & vtkDataSetAttributes.HIDDENPOINT, dtype=bool)
+    flags = hidden_points(data)
+    return np.zeros(data.GetNumberOfPoints(), dtype=bool) if flags is None else flags != 0
 
 
 def _places(data: Any) -> NDArray[np.float64]:

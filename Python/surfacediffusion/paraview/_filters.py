@@ -450,6 +450,7 @@ class Derivatives(RunFilter):
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         arrays = self.find_arrays(block, fields)
+        fields.alpha_is_data = True
         fields.data = arrays.find(0, "InputArray", ANY)
         fields.mask = arrays.find(1, "MaskArray", 1)
         return fields.data.values is not None
