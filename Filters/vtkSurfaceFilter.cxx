@@ -6,12 +6,15 @@
 #include "Conversion/RefineTogether.h"
 #include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
+#include "Distributed/CellFlags.h"
 #include "Distributed/SurfacePieces.h"
+#include "Run/BlockSentences.h"
 #include "Run/Collective.h"
 #include "Run/RunSettings.h"
 #include "vtkSurfaceFilterInternals.h"
 
 #include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -42,6 +45,17 @@ struct MergingSettings : Settings
     VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
   }
 };
+
+/// Whether polygons or strips take part, by their flags.
+bool HasVisibleCells(vtkPolyData* data)
+{
+  constexpr unsigned char absent =
+    vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL;
+  const std::vector<unsigned char> flags = FindCellFlags(data);
+  return flags.empty() ||
+    std::any_of(flags.begin() + data->GetNumberOfVerts() + data->GetNumberOfLines(), flags.end(),
+      [](unsigned char flag) { return (flag & absent) == 0; });
+}
 
 } // namespace
 
@@ -148,8 +162,10 @@ std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
 {
   const Reduction& processes = this->GetProcesses();
   std::vector<SurfaceBlock> selected;
+  BlockSentences hidden;
   bool anyPoint = false;
   bool anyPolygon = false;
+  bool anyVisible = false;
   for (const SurfaceBlock& block : blocks)
   {
     vtkPolyData* const data = block.Input;
@@ -157,6 +173,12 @@ std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
     const bool polygons =
       data->GetNumberOfPoints() > 0 && data->GetNumberOfPolys() + data->GetNumberOfStrips() > 0;
     anyPolygon = anyPolygon || polygons;
+    const bool isVisible = polygons && HasVisibleCells(data);
+    anyVisible = anyVisible || isVisible;
+    if (polygons && !isVisible)
+    {
+      hidden.Add("all polygons are hidden or ghost cells: nothing is computed", block.Name);
+    }
     if (polygons || !processes.IsSerial())
     {
       selected.push_back(block);
@@ -164,6 +186,11 @@ std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
   }
   anyPoint = processes.Any(anyPoint);
   anyPolygon = processes.Any(anyPolygon);
+  this->Private->HiddenWarnings.clear();
+  if (processes.IsSerial() || !processes.Any(anyVisible)) // the pieces are one surface
+  {
+    hidden.AppendTo(this->Private->HiddenWarnings, selected.size());
+  }
   const InputDescription& input = this->Private->Input;
   if (!anyPoint && !input.OtherTypes.empty())
   {
@@ -208,9 +235,13 @@ void vtkSurfaceFilter::ReportError(const std::string& text)
 
 void vtkSurfaceFilter::ReportWarnings(std::vector<Warning> warnings)
 {
-  for (const Sentence& sentence : this->Private->RefinementWarnings)
+  for (const auto* const sentences :
+    { &this->Private->RefinementWarnings, &this->Private->HiddenWarnings })
   {
-    warnings.push_back({ sentence, Fingerprint() });
+    for (const Sentence& sentence : *sentences)
+    {
+      warnings.push_back({ sentence, Fingerprint() });
+    }
   }
   const std::vector<Sentence> sentences = this->Private->Reported.Report(std::move(warnings));
   if (!sentences.empty() && this->GetProcesses().Rank() == 0)

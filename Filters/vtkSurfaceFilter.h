@@ -11,7 +11,8 @@
  *
  * Polygons and strips are triangulated internally. Vertices and lines pass through. Ghost and
  * hidden cells are ignored, and so are cells with a hidden point
- * (vtkDataSetAttributes::HIDDENPOINT), which keeps its value. Each block of composite input is a
+ * (vtkDataSetAttributes::HIDDENPOINT), which keeps its value. If that leaves nothing of a surface, a
+ * warning says so. Each block of composite input is a
  * surface of its own, and blocks of other types pass through. Messages that do not hold for all
  * blocks name theirs, by the block's name or its indices, such as 0/2. Any type of input is
  * accepted; if it has no surface, an error names the type and the remedy.

@@ -46,6 +46,7 @@ struct vtkSurfaceFilter::Internals
 
   SurfaceDiffusion::PieceRefinement Refinement;
   std::vector<SurfaceDiffusion::Sentence> RefinementWarnings; ///< of the present update
+  std::vector<SurfaceDiffusion::Sentence> HiddenWarnings; ///< likewise, of surfaces without cells
   bool IsComplete = true; ///< the present update, neither failed nor aborted
 
   bool HasFailed = false; ///< the last update, with an error that was reported

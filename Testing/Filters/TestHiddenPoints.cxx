@@ -13,6 +13,7 @@
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
+#include "vtkSurfaceCurvatureFilter.h"
 #include "vtkSurfaceDistanceFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
@@ -359,4 +360,44 @@ TEST(HiddenPoints, OfTheSecondInputHaveNoValue)
   }
   ASSERT_TRUE(results[0] && results[1]);
   EXPECT_TRUE(Identical(results[0], results[1]));
+}
+
+TEST(HiddenPoints, AndCellsAreAWarningIfNothingElseIsLeft)
+{
+  const char* const text = "all polygons are hidden or ghost cells: nothing is computed";
+  for (const bool hidesPoints : { false, true })
+  {
+    const auto surface = Grid(5, 5);
+    AddPointArray(surface, "f", 1, Rough);
+    surface->GetPointData()->SetActiveScalars("f");
+    const auto flags =
+      MakeFlags(hidesPoints ? surface->GetNumberOfPoints() : surface->GetNumberOfCells());
+    flags->FillValue(
+      hidesPoints ? +vtkDataSetAttributes::HIDDENPOINT : +vtkDataSetAttributes::HIDDENCELL);
+    surface->GetAttributes(hidesPoints ? vtkDataObject::POINT : vtkDataObject::CELL)
+      ->AddArray(flags);
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetBlock(0, MakeSurface(true));
+    blocks->SetBlock(1, surface);
+    vtkNew<vtkFVMHeatFilter> heat;
+    vtkNew<vtkSurfaceCurvatureFilter> curvature;
+    for (vtkPolyDataAlgorithm* const filter :
+      std::initializer_list<vtkPolyDataAlgorithm*>{ heat, curvature })
+    {
+      Messages messages(filter);
+      filter->SetInputData(surface);
+      filter->Update();
+      filter->Modified();
+      filter->Update();
+      EXPECT_TRUE(messages.Errors.empty()) << messages.Errors[0];
+      ASSERT_EQ(messages.Warnings.size(), 1u);
+      EXPECT_NE(messages.Warnings[0].find(text), std::string::npos) << messages.Warnings[0];
+      EXPECT_EQ(messages.Warnings[0].find("block"), std::string::npos) << messages.Warnings[0];
+      filter->SetInputData(blocks);
+      filter->Update();
+      ASSERT_EQ(messages.Warnings.size(), 2u);
+      EXPECT_NE(messages.Warnings[1].find(std::string("block 1: ") + text), std::string::npos)
+        << messages.Warnings[1];
+    }
+  }
 }

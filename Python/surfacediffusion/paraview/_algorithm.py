@@ -18,7 +18,7 @@ from .. import _core
 from ._fields import ArrayFinder, Choice, Fields, join_sentences, make_core
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement, mean_edge_length
-from ._surfaces import Block, Parts, Shapes, SurfaceError, copy_structure
+from ._surfaces import ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure
 
 #: Properties that are no settings of the extension, with their defaults.
 _OWN: dict[str, Any] = {
@@ -46,6 +46,13 @@ def list_settings(model: str) -> dict[str, dict[str, Any]]:
 def spell(words: list[Any]) -> str:
     """A sentence of the numerics in the words of VTK and ParaView."""
     return "".join(word[1] for word in words)
+
+
+def _is_hidden(data: Any) -> bool:
+    """Whether no polygon or strip takes part, by its flags."""
+    flags = cell_flags(data, True)
+    first = data.GetNumberOfVerts() + data.GetNumberOfLines()
+    return flags is not None and bool(((flags[first:] & ABSENT) != 0).all())
 
 
 def _has_polygons(block: Block) -> bool:
@@ -286,6 +293,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             problems.append("the input is empty; a surface of polygons or strips is needed")
         elif not selected:
             problems.append("the input has no polygons or strips; a surface is needed")
+        self._warnings += join_sentences(
+            [("all polygons are hidden or ghost cells: nothing is computed", block.name)
+             for block in selected if _is_hidden(block.input)], len(selected))
         return selected
 
     def _stitch(self, pieces: list[Block]) -> list[Stitched]:
