@@ -105,6 +105,14 @@ class Package(unittest.TestCase):
                 self.assertTrue(of_line, f"{statement} is accepted: {found}")
 
     @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+    @unittest.skipUnless(importlib.util.find_spec("vtkmodules"), "VTK is not installed")
+    def test_types_of_the_plugin_hold(self):
+        with tempfile.TemporaryDirectory() as name:
+            found = subprocess.run([sys.executable, "-m", "mypy", "-p", "surfacediffusion.paraview"],
+                                   capture_output=True, text=True, cwd=name)
+        self.assertEqual(found.returncode, 0, found.stdout + found.stderr)
+
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
     def test_stubs_agree_with_the_module(self):
         modules = [f"surfacediffusion.{module.name}" for module in pkgutil.iter_modules([str(FOLDER)])
                    if module.name.startswith("_") and module.name != "_core"]

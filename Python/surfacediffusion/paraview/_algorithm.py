@@ -9,7 +9,7 @@ import functools
 from typing import Any, Callable
 
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import vtkOutputWindow
+from vtkmodules.vtkCommonCore import vtkCommand, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -80,7 +80,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self._reported: list[str] = []
         self._warnings: list[str] = []  # of this class, in the present update
         self._of_refinement: list[str] = []
-        self._quiet: int | None = None
+        self._quiet = 0  # no observer
         choice = self.DEFAULT_CHOICE
         if choice is not None:
             self.SetInputArrayToProcess(
@@ -95,10 +95,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             target, value = self.own, type(_OWN[name])("" if given is None else given)
         else:
             kind = list_settings(self.MODEL)[name]["kind"]
-            convert: Callable[[Any], Any] = {
+            converters: dict[str, Callable[[Any], Any]] = {
                 "switch": lambda x: bool(int(x)), "number": float,
-                "numbers": lambda x: [float(each) for each in x]}.get(kind, int)
-            target, value = self.settings, convert(given)
+                "numbers": lambda x: [float(each) for each in x]}
+            target, value = self.settings, converters.get(kind, int)(given)
         if target.get(name, _MISSING) != value:
             target[name] = value
             self.Modified()
@@ -108,8 +108,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         rows = self._numbers.get(name)
         return rows[0][0] if rows else _NUMBERS.get(name, 0.0)
 
-    def SetInputArrayToProcess(self, index: int, _port: int, _connection: int, association: int,
-                               name: Any, *_component: Any) -> None:
+    # VTK's overloads have other names, which no caller uses.
+    def SetInputArrayToProcess(  # type: ignore[override]
+            self, index: int, _port: int, _connection: int, association: int, name: Any,
+            *_component: Any) -> None:
         """Choose an array by its name, or as an active attribute by its number."""
         # ParaView looks there for arrays that it should convert.
         VTKPythonAlgorithmBase.SetInputArrayToProcess(
@@ -394,6 +396,5 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                 vtkOutputWindow.GetInstance().DisplayErrorText(text)
 
         forget.CallDataType = "string0"  # type: ignore[attr-defined]
-        if self._quiet is not None:
-            executive.RemoveObserver(self._quiet)
-        self._quiet = executive.AddObserver("ErrorEvent", forget)
+        executive.RemoveObserver(self._quiet)
+        self._quiet = executive.AddObserver(vtkCommand.ErrorEvent, forget)

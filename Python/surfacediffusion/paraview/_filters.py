@@ -221,11 +221,13 @@ class ModelFilter(SurfaceFilter):
 
     def _publish(self, outputs: Any) -> bool:
         found = _core.find_times(self.MODEL, self.settings, self._last_step())
-        for port in range(outputs.GetNumberOfInformationObjects() if found else 0):
+        if found is None:
+            return False
+        for port in range(outputs.GetNumberOfInformationObjects()):
             info, times = outputs.GetInformationObject(port), found["times"]
             info.Set(_TIME.TIME_STEPS(), times, len(times))
             info.Set(_TIME.TIME_RANGE(), [times[0], times[-1]], 2)
-        return found is not None
+        return True
 
     def RequestInformation(self, request: Any, inputs: Any, outputs: Any) -> int:
         self._publish(outputs)

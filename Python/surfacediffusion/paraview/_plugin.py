@@ -11,7 +11,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from typing import Any, Callable
 
-from paraview.modules.vtkRemotingCore import vtkPVPluginTracker
+from paraview.modules.vtkRemotingCore import vtkPVPluginTracker  # type: ignore[import-not-found]
 
 from ._filters import CLASSES
 
