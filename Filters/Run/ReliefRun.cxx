@@ -135,10 +135,14 @@ Vector ReliefRun::MakeHeights(
   const Points& points = surface.Points();
   Fields fields = input.ReadFields();
   MoveMarksToData(surface, fields, Reduction::Serial(), this->Parallel);
-  const Vector values = fields.Data.Values.col(0);
+  Vector values = fields.Data.Values.col(0);
   for (Eigen::Index p = 0; p < values.size(); ++p)
   {
-    if (!std::isfinite(values[p]))
+    if (surface.VertexOf(static_cast<Index>(p)) < 0)
+    {
+      values[p] = 0.0; // whatever stands there: the point stays
+    }
+    else if (!std::isfinite(values[p]))
     {
       throw ErrorAt(
         fields.DataName, Sentence("is ") << values[p], false, p, "allowed: finite numbers");
@@ -146,6 +150,10 @@ Vector ReliefRun::MakeHeights(
   }
   Vector heights = ReliefHeights(points, triangles, values,
     { settings.Height, settings.Base, settings.Levels == 1, settings.Threshold, settings.Flank });
+  for (Eigen::Index p = 0; p < heights.size(); ++p)
+  {
+    heights[p] = surface.VertexOf(static_cast<Index>(p)) < 0 ? 0.0 : heights[p];
+  }
   const double largest = heights.cwiseAbs().maxCoeff();
   const double extent = (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
   if (!(largest <= extent))
@@ -180,7 +188,7 @@ void ReliefRun::ListResults(const Triangles& triangles, const Relief& relief)
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
   Points moved = surface.Points();
-  Vector heights = relief.Heights; // at points of no triangle, which stay, those given
+  Vector heights = relief.Heights;
   for (Index p = 0; p < static_cast<Index>(moved.rows()); ++p)
   {
     const Index vertex = surface.VertexOf(p);

@@ -171,7 +171,8 @@ def relief(
 
 def _smooth_points(surface: Surface, mask: Any, overhang: Any, up: Any) -> NDArray[np.bool_]:
     """The points without relief."""
-    smooth = np.zeros(surface.n_points, dtype=bool)
+    smooth = np.ones(surface.n_points, dtype=bool)
+    smooth[surface._connectivity] = False  # the points of a face; others stay
     faces = np.zeros(surface.n_faces, dtype=bool)
     flags, on_faces = find_mask(mask, (surface.n_points, surface.n_faces))
     if flags is not None:

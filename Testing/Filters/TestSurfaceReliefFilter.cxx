@@ -430,3 +430,25 @@ TEST(SurfaceReliefFilter, RefinesLargeFacesWithTheirData)
   EXPECT_NE(messages.Errors.back().find("RefineTo is -1; allowed: finite numbers, 0 or more"),
     std::string::npos);
 }
+
+TEST(SurfaceReliefFilter, HasNoHeightAtPointsThatStay)
+{
+  for (const double unused : { 1.0, 1e9, vtkMath::Nan() })
+  {
+    const auto box = Box(10.0, 4);
+    const vtkIdType last = box->GetPoints()->InsertNextPoint(5.0, 5.0, 20.0);
+    AddPointArray(box, "Texture", 1, [&](vtkIdType i, int) { return i == last ? unused : 1.0; });
+    vtkNew<vtkSurfaceReliefFilter> filter;
+    filter->SetInputData(box);
+    filter->SetHeight(0.25);
+    filter->SetBase(0.125);
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty()) << messages.Errors[0];
+    ASSERT_NE(Result(filter, "ReliefHeight"), nullptr);
+    EXPECT_EQ(Result(filter, "ReliefHeight")->GetComponent(last, 0), 0.0);
+    EXPECT_EQ(filter->GetOutput()->GetPoint(last)[2], 20.0);
+    EXPECT_EQ(filter->GetLoweredPoints(), 0);
+    EXPECT_NEAR(Result(filter, "ReliefHeight")->GetComponent(0, 0), 0.375, 1e-12);
+  }
+}

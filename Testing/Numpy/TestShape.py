@@ -292,6 +292,13 @@ class Relief(unittest.TestCase):
         sloped = sd.relief(fine, values, 0.2, base=-0.1, levels="two", flank=0.8).heights
         self.assertGreater((np.abs(sloped[inner]) < 0.09).sum(), 100)
 
+    def test_points_of_no_face_have_no_height(self):
+        fine = sd.refine(box(), 4.0).surface
+        surface = sd.Surface(np.vstack([fine.points, [[0, 0, 50.0]]]), fine.triangles)
+        result = sd.relief(surface, np.ones(surface.n_points), 0.3, base=0.1)
+        self.assertEqual((result.heights[-1], result.lowered_points), (0, 0))
+        np.testing.assert_array_equal(result.surface.points[-1], [0, 0, 50])
+
     def test_defects_are_counted_in_one_line_and_the_relief_is_made(self):
         part = box()
         opened = sd.refine((part.points, part.triangles[2:]), 2.0).surface
