@@ -102,6 +102,8 @@ def make_files(folder):
     samples.write_mgh(path("volume.mgh"), np.zeros(12))
     nib.save(nib.freesurfer.MGHImage(np.zeros((2, 3, 2), np.float32), np.eye(4)),
              path("volume.mgh"))
+    np.save(path("huge.npy"), np.full(N, 1e200))
+    np.save(path("zero.npy"), np.zeros(0))
     np.save(path("cube.npy"), np.zeros((3, 3, 3)))
     np.save(path("faces.npy"), np.zeros(320))
     np.save(path("complex.npy"), np.zeros(N, complex))
@@ -166,6 +168,9 @@ CASES = [
     (DATA.format("far.label"), f"far.label: vertices 1 to {N}, but lh.surf.gii has points 0 to"),
     (DATA.format("cut.npy"), "cut.npy: damaged NumPy npy file"),
     (DATA.format("cube.npy"), r"cube.npy: an array of shape \(3, 3, 3\)"),
+    (DATA.format("zero.npy"), f"zero.npy: 0 values per column, .* allowed: {N} values"),
+    ("smooth lh.surf.gii huge.npy 5 out.shape.gii", r"out.shape.gii: a value is 1e\+200; allowed in GIFTI: less "
+     r"than 3\.4e38"),
     (DATA.format("complex.npy"), "complex.npy: values of type complex128; allowed: real"),
     (DATA.format("objects.npy"), "objects.npy: damaged NumPy npy file: Object arrays"),
     (DATA.format("table.txt"), "table.txt: line 2 is '1 2'; allowed: one number per line, and comments after #"),
@@ -195,6 +200,7 @@ CASES = [
      "rh.surf.gii: a surface of CortexRight; allowed for --left: CortexLeft"),
     ("smooth a.dscalar.nii 5 out.nii --left other.surf.gii --right rh.surf.gii",
      f"a.dscalar.nii: {N} values per column, but other.surf.gii has 42 points"),
+    (CIFTI.format("a.dscalar.nii") + " --roi zeros.func.gii", "zeros.func.gii is of one surface; allowed: a CIFTI"),
     # regions and columns
     (DATA.format("lh.func.gii") + " --roi none.gii", "none.gii: cannot be read"),
     (DATA.format("lh.func.gii") + " --roi short.func.gii", f"short.func.gii: {N - 1} values"),
@@ -223,6 +229,8 @@ CASES = [
     ("texture lh.surf.gii 5 out.xyz", "out.xyz: the name announces no format"),
     ("segment lh.surf.gii lh.func.gii out.func.gii --regions 3 --means 1 2", "--regions is 3, but --means has 2 "
      "numbers; allowed: the same number, or --means alone"),
+    ("segment lh.surf.gii lh.func.gii out.func.gii --means 1", "--means has 1 number; allowed: 2 or more"),
+    ("interpolate lh.surf.gii none.csv out.func.gii", "none.csv: cannot be read: No such file"),
     ("texture lh.surf.gii 1e-4mm out.stl --relief 1e-5mm", "needs more than 1000000 triangles; allowed: "
      "[0-9.]+ mm or more, or --maximum-triangles"),
     ("texture lh.surf.gii 0.1mm out.stl --relief 0.01mm", "needs more than 1000000 triangles"),
@@ -279,6 +287,15 @@ CASES = [
     ("texture lh.surf.gii 5 out.func.gii --base 1", "--base without --relief; allowed: both"),
     ("texture lh.surf.gii 5 out.obj --overhang 30", "--overhang without --relief; allowed: both"),
     # outputs
+    ("smooth lh.surf.gii lh.func.gii 5 -", "-: cannot be written: it is not a file; allowed: the name of a file"),
+    ("smooth lh.surf.gii lh.func.gii 5 ./lh.surf.gii", "./lh.surf.gii, which is read, would be replaced by OUTPUT; "
+     "allowed: another file"),
+    ("curvature lh.surf.gii lh.surf.gii", "lh.surf.gii, which is read, would be replaced by OUTPUT"),
+    ("smooth lh.surf.gii lh.func.gii 5 zeros.func.gii --roi zeros.func.gii", "zeros.func.gii, which is read, would"),
+    (CIFTI.format("a.dscalar.nii").replace("out.dscalar.nii", "rh.surf.gii"), "rh.surf.gii, which is read, would"),
+    ("distance lh.surf.gii out.npy --from 3 --nearest ./out.npy", "./out.npy is OUTPUT and --nearest; allowed: "
+     "different files"),
+    ("refine a.ply 9 out.ply --data a.npy out.npy --data lh.func.gii out.npy", "out.npy is NEW and NEW; allowed"),
     ("smooth lh.surf.gii lh.func.gii 5 out.csv", "out.csv: .csv names no format of files; allowed: .gii, since "
      "it is written as GIFTI, the format of the input"),
     ("smooth lh.surf.gii a.npy 5 out.xyz", "out.xyz: .xyz names no format of files; allowed: .npy, since "),

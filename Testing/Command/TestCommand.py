@@ -221,6 +221,11 @@ class OtherCommands(CommandTest):
         self.assertEqual(code, 0)
         self.assertIn("--colors is opponent, but lh.func.gii has no colours", error)
 
+    def test_denoise_names_its_search_for_the_weight(self):
+        samples.write_gifti("flat.func.gii", {"one": np.ones(N)})
+        _, _, error = run("denoise", "lh.surf.gii", "flat.func.gii", "out.func.gii")
+        self.assertIn("warning: the search for --weight finds no noise in the data", error)
+
     def test_denoise_removes_noise_and_keeps_an_edge(self):
         points, faces = samples.sphere(4)
         samples.write_surface("fine.surf.gii", points, faces)

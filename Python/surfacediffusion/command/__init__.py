@@ -17,7 +17,7 @@ import sys
 from .._threads import set_number_of_threads
 from ..files import FileError
 from .arguments import parse
-from .inputs import ArgumentProblem
+from .inputs import ArgumentProblem, check_files
 from .report import Report
 
 
@@ -32,6 +32,7 @@ def main(argv=None) -> int:
     try:
         if arguments.threads is not None:
             set_number_of_threads(arguments.threads)
+        check_files(arguments)
         with report.collecting_warnings():
             arguments.run(arguments, report)
     except (FileError, ArgumentProblem, ValueError) as error:

@@ -141,6 +141,8 @@ def add_segment(commands):
 def segment(arguments, report):
     options = {"number_of_regions": arguments.regions or 2, **given(fidelity_weight=arguments.weight)}
     if arguments.means:
+        if len(arguments.means) < 2:
+            raise inputs.ArgumentProblem("--means has 1 number; allowed: 2 or more")
         if arguments.regions not in (None, len(arguments.means)):
             raise inputs.ArgumentProblem(f"--regions is {arguments.regions}, but --means has "
                                          f"{len(arguments.means)} numbers; allowed: the same number, "

@@ -18,6 +18,10 @@ from ..files.data import NO_VERTICES
 SIDES = {"left": "CortexLeft", "right": "CortexRight", "cerebellum": "Cerebellum"}
 
 
+#: Surfaces that hold data, too, and those whose formats hold none, so that no data are written as such
+_MESHES = (".ply", ".vtk", ".vtp", ".off", ".obj", ".stl")
+
+
 class ArgumentProblem(ValueError):
     """Arguments that contradict each other or the files; one line that names them."""
 
@@ -45,6 +49,35 @@ class Patch:
         """The rows of the part. Outside the region the values are 0."""
         values = np.where(self.excluded.reshape(len(values), -1), 0, values)
         return values if self.part.vertices is None else values[self.part.vertices]
+
+
+#: The arguments that name what a command writes, and what it reads beside DATA
+_OUTPUTS = {"output": "OUTPUT", "map": "--map", "curves": "--curves", "nearest": "--nearest", "error": "--error"}
+_INPUTS = ("surface", *SIDES, "roi", "areas", "missing", "residuals", "fixed", "speed", "sources", "values")
+
+
+def check_files(arguments):
+    """ArgumentProblem if an output would replace another one, or a file that is read. DATA may be replaced by
+    the result, and a surface by one that has its points or its data."""
+    outputs = [(word, getattr(arguments, name, None)) for name, word in _OUTPUTS.items()]
+    if arguments.command == "refine":
+        outputs += [("NEW", new) for _, new in arguments.data]
+    seen = {}
+    for word, path in outputs:
+        if path is None:
+            continue
+        same = os.path.realpath(path)
+        if same in seen:
+            raise ArgumentProblem(f"{path} is {seen[same]} and {word}; allowed: different files")
+        seen[same] = word
+        for name in _INPUTS:
+            other = getattr(arguments, name, None)
+            if not isinstance(other, str) or os.path.realpath(split_label(other)[0]) != same:
+                continue
+            is_mesh = path.lower().endswith(_MESHES) or arguments.command == "denoise-mesh" or getattr(
+                arguments, "move", False)
+            if name != "surface" or not is_mesh:
+                raise ArgumentProblem(f"{path}, which is read, would be replaced by {word}; allowed: another file")
 
 
 def refuse(arguments, options, where, allowed):
@@ -115,7 +148,7 @@ def _read_table(path):
         with open(path, encoding="utf-8-sig") as file:
             lines = [line.strip() for line in file]
     except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"{path}: {getattr(error, 'strerror', None) or 'no text'}") from error
+        raise FileError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'no text'}") from error
     rows, names = [], []
     for i, line in enumerate(lines, start=1):
         if not line or line.startswith("#"):
@@ -300,8 +333,8 @@ def require_same_number(path, names, path_of_data, names_of_data):
 def surface_for(part, surfaces, data):
     if "" not in surfaces:
         if data.kind != "cifti":
-            raise ArgumentProblem(f"--left and --right are for CIFTI files; {data.path} has one "
-                                  "surface: give SURFACE")
+            raise ArgumentProblem(f"--left and --right are for CIFTI files; {data.path} is of one surface; "
+                                  "allowed: a CIFTI file, or all files of one SURFACE")
         if part.structure not in SIDES.values():
             raise FileError(f"{data.path}: data at vertices of {part.structure}; allowed: "
                             + ", ".join(SIDES.values()))

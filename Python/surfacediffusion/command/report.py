@@ -14,6 +14,7 @@ import numpy as np
 
 #: The option of a command that gives a setting of the package: its destination, and how it is written
 _OPTIONS = {
+    "automatic_fidelity": ("weight", "the search for --weight"),
     "correlation_length": ("length", "--length"),
     "edge_threshold": ("threshold", "--threshold"),
     "edge_width": ("width", "--width"),

@@ -254,6 +254,8 @@ def check_output_name(path, kind, rows=""):
 def check_output_folder(path):
     """Finds before a long computation that its result has no place to go."""
     folder = os.path.dirname(os.path.abspath(path))
+    if os.fspath(path) == "-":
+        raise FileError("-: cannot be written: it is not a file; allowed: the name of a file")
     if not os.path.isdir(folder):
         raise FileError(f"{path}: cannot be written: there is no folder {folder}")
     if os.path.isdir(path):

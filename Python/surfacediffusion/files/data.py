@@ -20,6 +20,9 @@ ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dts
            "FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), PLY, VTK polydata, NumPy (.npy), "
            "text with one number per line (.txt)")
 
+#: The formats that are written in single precision
+_SINGLE = ("gifti", "cifti", "curv", "mgh", "nifti")
+
 NO_VERTICES = ("an STL file numbers no vertices, so that values at vertices belong to none; allowed: "
                "values at faces, or a surface of another format")
 
@@ -90,6 +93,12 @@ class Data:
         """Raises FileError if the name of an output announces another format."""
         check_output_name(path, self.kind, self.rows)
 
+    def _check_size(self, path, values):
+        """Raises FileError if the format, which has single precision, has no such numbers."""
+        largest = max((np.abs(new).max(initial=0, where=np.isfinite(new)) for new in values), default=0)
+        if self.kind in _SINGLE and largest > np.finfo(np.float32).max:
+            raise FileError(f"{path}: a value is {largest:.3g}; allowed in {NAMES[self.kind]}: less than 3.4e38")
+
     def save(self, path, values, columns=None):
         """Write other values in the same format, with the metadata of the file.
 
@@ -107,6 +116,7 @@ class Data:
             raise FileError(f"{path}: values cannot be written as {NAMES[self.kind]}, the format of "
                             f"{self.path}; allowed: formats of values")
         self.check_name(path)
+        self._check_size(path, values)
         columns = list(range(len(self.names))) if columns is None else list(columns)
         for part, new in zip(self.parts, values):
             if np.shape(new) != (len(part.values), len(columns)):
@@ -254,7 +264,7 @@ def _read_npy(content):
     array = np.lib.format.read_array(io.BytesIO(content.bytes), allow_pickle=False)
     if array.ndim not in (1, 2):
         raise content.error(f"an array of shape {array.shape}; allowed: (n,) or (n, k)")
-    values = array.reshape(len(array), -1)
+    values = array.reshape(len(array), 1) if array.ndim == 1 else array
     names = [str(i + 1) for i in range(values.shape[1])]
     return Data(content.path, content.kind, names, [Part(values)], image=array.ndim)
 
