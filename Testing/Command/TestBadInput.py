@@ -200,7 +200,7 @@ CASES = [
      "rh.surf.gii: a surface of CortexRight; allowed for --left: CortexLeft"),
     ("smooth a.dscalar.nii 5 out.nii --left other.surf.gii --right rh.surf.gii",
      f"a.dscalar.nii: {N} values per column, but other.surf.gii has 42 points"),
-    (CIFTI.format("a.dscalar.nii") + " --roi zeros.func.gii", "zeros.func.gii is of one surface; allowed: a CIFTI"),
+    (CIFTI.format("a.dscalar.nii") + " --roi zeros.func.gii", "zeros.func.gii is of one surface; allowed: "),
     # regions and columns
     (DATA.format("lh.func.gii") + " --roi none.gii", "none.gii: cannot be read"),
     (DATA.format("lh.func.gii") + " --roi short.func.gii", f"short.func.gii: {N - 1} values"),
@@ -236,18 +236,24 @@ CASES = [
     ("texture lh.surf.gii 0.1mm out.stl --relief 0.01mm", "needs more than 1000000 triangles"),
     ("texture lh.surf.gii 3mm out.stl --relief 0.1mm --maximum-triangles 2000", "needs more than 2000 triangles"),
     ("texture lh.surf.gii 5 out.func.gii --maximum-triangles 9", "--maximum-triangles for values at the vertices"),
-    ("refine lh.surf.gii 1e-4 out.ply", r"LENGTH is 0.0001, for which .* 4000000 triangles; allowed: 0.02\d* or more, "
-     "or --maximum-triangles"),
+    ("refine lh.surf.gii 1e-4 out.ply", r"LENGTH is 0.0001, for which .* 4000000 triangles; allowed: "
+     r"0.02\d* or more, or --maximum-triangles"),
     ("directions lh.surf.gii out.func.gii", "out.func.gii: the name announces no format"),
     ("curvature lh.surf.gii out.func.gii --fwhm -1", "argument --fwhm: is '-1'"),
     ("distance lh.surf.gii out.npy", "the sources are missing; allowed: one of SOURCES and --from"),
     ("distance lh.surf.gii lh.func.gii out.npy --from 3", "the sources are both SOURCES and --from"),
     ("distance lh.surf.gii out.npy --from 1,2", "argument --from: is '1,2'; allowed: the number"),
     ("distance lh.surf.gii out.npy --from 99999", "--from is 99999; allowed: 0 to "),
+    ("distance lh.surf.gii a.dscalar.nii out.npy", "a.dscalar.nii: data of 2 surfaces; allowed: of one"),
+    ("distance lh.surf.gii right.func.gii out.npy", "data of CortexRight, but lh.surf.gii is of CortexLeft"),
+    ("distance lh.surf.gii out.npy --from 3 --speed nan.func.gii", "--speed is nan in row 0; allowed"),
+    ("random-field lh.surf.gii out.npy --range 1e-9", "--range is 1e-09; allowed"),
+    ("random-field lh.surf.gii out.npy --range 1 --seed 1e30", "--seed: is '1e30'; allowed: a whole number from"),
+    ("directions lh.surf.gii out.npy --method north", "--method is 'north'; allowed: PrincipalCurvature"),
     ("distance lh.surf.gii out.off --from 3", "out.off: the name announces no format"),
     ("curvature lh.surf.gii out.off", "out.off: the name announces no format"),
     ("derivatives lh.surf.gii lh.func.gii out.func.gii --quantity slope", "invalid choice: 'slope'"),
-    ("derivatives lh.surf.gii short.func.gii out.func.gii", "short.func.gii: .* values; allowed: "),
+    ("derivatives lh.surf.gii short.func.gii out.func.gii", "short.func.gii: .*; allowed: "),
     ("random-field lh.surf.gii out.func.gii", "one of the arguments --fwhm --range is required"),
     ("random-field lh.surf.gii out.func.gii --fwhm 0", "argument --fwhm: is '0'"),
     ("random-field lh.surf.gii out.func.gii --fwhm 5 --nu 3", "--nu with --fwhm; allowed: --nu with --range"),
@@ -288,10 +294,10 @@ CASES = [
     ("texture lh.surf.gii 5 out.obj --overhang 30", "--overhang without --relief; allowed: both"),
     # outputs
     ("smooth lh.surf.gii lh.func.gii 5 -", "-: cannot be written: it is not a file; allowed: the name of a file"),
-    ("smooth lh.surf.gii lh.func.gii 5 ./lh.surf.gii", "./lh.surf.gii, which is read, would be replaced by OUTPUT; "
-     "allowed: another file"),
+    ("smooth lh.surf.gii lh.func.gii 5 ./lh.surf.gii", "./lh.surf.gii, which is read, would be replaced by "
+     "OUTPUT; allowed: another file"),
     ("curvature lh.surf.gii lh.surf.gii", "lh.surf.gii, which is read, would be replaced by OUTPUT"),
-    ("smooth lh.surf.gii lh.func.gii 5 zeros.func.gii --roi zeros.func.gii", "zeros.func.gii, which is read, would"),
+    ("smooth lh.surf.gii lh.func.gii 5 zeros.func.gii --roi zeros.func.gii", "zeros.func.gii, which is read"),
     (CIFTI.format("a.dscalar.nii").replace("out.dscalar.nii", "rh.surf.gii"), "rh.surf.gii, which is read, would"),
     ("distance lh.surf.gii out.npy --from 3 --nearest ./out.npy", "./out.npy is OUTPUT and --nearest; allowed: "
      "different files"),

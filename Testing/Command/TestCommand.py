@@ -402,6 +402,27 @@ class OtherCommands(CommandTest):
         self.assertEqual((a.min(), a.max()), (0, 1))
         self.assertEqual(read_data("a.shape.gii").parts[0].structure, "CortexLeft")
 
+    def test_values_at_some_vertices_stay_at_these(self):
+        order = np.random.default_rng(5).permutation(N)
+        arrays = [samples.gifti.GiftiDataArray(order.astype(np.int32), "NIFTI_INTENT_NODE_INDEX",
+                                               "NIFTI_TYPE_INT32"),
+                  samples.gifti.GiftiDataArray(NOISE[order], "NIFTI_INTENT_SHAPE", "NIFTI_TYPE_FLOAT32")]
+        nib.save(samples.gifti.GiftiImage(darrays=arrays), "sparse.func.gii")
+        np.save("noise.npy", NOISE)
+        for name in ("sparse.func.gii", "noise.npy"):
+            self.succeed(f"derivatives lh.surf.gii {name} {name}.npy")
+        np.testing.assert_array_equal(np.load("sparse.func.gii.npy"), np.load("noise.npy.npy"))
+        samples.write_label("a.label", [7, 3], [0, 0])
+        self.succeed("distance lh.surf.gii a.label a.npy")
+        self.succeed("distance lh.surf.gii b.npy --from 3 --from 7")
+        np.testing.assert_array_equal(np.load("a.npy"), np.load("b.npy"))
+
+    def test_places_far_from_the_surface_are_a_warning(self):
+        self.succeed("distance lh.surf.gii a.npy --from 0.1,0,10.1")
+        code, _, error = run("distance", "lh.surf.gii", "a.npy", "--from", "100,0,10100")
+        self.assertEqual(code, 0)
+        self.assertRegex(error, r"warning: --from 100,0,10100 is 1.009e\+04 from the surface, which is 34")
+
     def test_directions_are_unit_vectors_in_the_faces(self):
         self.succeed("directions lh.surf.gii out.npy --method Smooth")
         field = np.load("out.npy")
@@ -734,6 +755,24 @@ class Reports(CommandTest):
 
     def test_quiet_prints_nothing(self):
         self.assertEqual(self.succeed("smooth lh.surf.gii lh.func.gii 5 out.func.gii --quiet"), "")
+
+    def test_what_cannot_be_printed_is_one_line(self):
+        samples.write_gifti("größe\udcff.func.gii", {"one": NOISE})
+        command = [sys.executable, "-m", "surfacediffusion.command", "info", "größe\udcff.func.gii"]
+        for encoding, word in (("ascii:strict", b"gr\\xf6\\xdfe\\udcff"),
+                               ("utf-8:strict", "größe\\udcff".encode())):
+            done = subprocess.run(command, capture_output=True, env={**os.environ, "PYTHONIOENCODING": encoding})
+            self.assertEqual((done.returncode, done.stderr), (0, b""))
+            self.assertTrue(done.stdout.startswith(word), done.stdout)
+        with open("/dev/full", "w") as full:
+            done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, b"surfacediffusion: standard output: cannot be written: No space left on device\n"))
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE)
+        os.close(writer)
+        self.assertEqual((done.returncode, done.stderr), (1, b""))
 
     def test_threads_do_not_change_the_result(self):
         before = get_number_of_threads()

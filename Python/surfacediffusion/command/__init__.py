@@ -45,5 +45,4 @@ def main(argv=None) -> int:
         return report.fail(error, 1)
     except Exception as error:  # a defect of this program; the user still gets one line
         return report.fail(f"internal error: {type(error).__name__}: {error}", 1)
-    report.finish()
-    return 0
+    return report.finish()

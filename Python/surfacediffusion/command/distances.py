@@ -9,6 +9,7 @@ from .. import conduction_velocity, nearest_sources
 from .. import derivatives as derive
 from .. import distance as measure
 from ..files import FileError, new_data
+from ..files.content import read_content
 from . import common, inputs, values
 from .report import number
 from .stages import read_surface_for_output, solid, write_new
@@ -53,7 +54,7 @@ def distance(arguments, report):
             + "; allowed: one of SOURCES and --from")
     surface = read_surface_for_output(arguments, report)
     with report.timed("read"):
-        sets, numbers, names = _read_sources(arguments, surface)
+        sets, numbers, names = _read_sources(arguments, surface, report)
         speed = None
         if arguments.speed is not None:
             speed = inputs.read_values(arguments.speed, surface, tables=False)[1][:, 0]
@@ -80,7 +81,16 @@ def distance(arguments, report):
         nearest.save(arguments.nearest, [labels.astype(np.float32)])
 
 
-def _read_sources(arguments, surface):
+def _nearest_vertex(points, place, report):
+    gaps = np.linalg.norm(points - place, axis=1)
+    size = np.linalg.norm(np.ptp(points, axis=0))
+    if gaps.min() > 0.1 * size:
+        report.warn(f"--from {','.join(f'{x:g}' for x in place)} is {gaps.min():.4g} from the surface, which is "
+                    f"{size:.4g} large (its unit or origin may be another)")
+    return int(np.argmin(gaps))
+
+
+def _read_sources(arguments, surface, report):
     """The vertices of each set of sources, the number that each of them stands for, and the names of the
     columns."""
     count = len(surface.points)
@@ -90,11 +100,13 @@ def _read_sources(arguments, surface):
             if isinstance(place, int) and place >= count:
                 raise inputs.ArgumentProblem(f"--from is {place}; allowed: 0 to {count - 1}, the "
                                              f"vertices of {surface.path}, or x,y,z")
-            rows.append(place if isinstance(place, int) else int(
-                np.argmin(((surface.points - place) ** 2).sum(axis=1))))
+            rows.append(place if isinstance(place, int) else _nearest_vertex(surface.points, place, report))
         found, places = np.unique(rows, return_index=True)
         return [found], [places + 1], ["distance"]
-    _, columns, names = inputs.read_values(arguments.sources, surface, tables=False)
+    content = read_content(arguments.sources)
+    _, columns, names = inputs.read_values(content, surface, tables=False)
+    if content.kind == "label":  # whose values may be anything, and mostly are 0
+        columns = np.isfinite(columns).astype(float)
     sets = [np.flatnonzero(np.nan_to_num(column)) for column in columns.T]
     for rows, name in zip(sets, names):
         if len(rows) == 0:

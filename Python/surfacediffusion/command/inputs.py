@@ -123,20 +123,22 @@ def _read_surfaces(arguments):
 
 
 def read_values(path, surface, tables=True):
-    """The values of `interpolate`: places (p, 3) or None, values (p, k) or (n, k), and the names of the
-    columns. tables: whether places with values are allowed; otherwise they are at the vertices."""
+    """The values of a file or its Content: places (p, 3) or None, values (p, k) or (n, k), NaN where the file
+    has none, and the names of the columns. tables: whether places with values are allowed; otherwise they are
+    at the vertices."""
     table = _read_table(path) if tables else None
     if table is not None:
         rows, names = table
         return rows[:, :3], rows[:, 3:], names
     data = read_data(path)
-    part = data.parts[0]
-    values = np.asarray(part.values, dtype=float)
-    if len(data.parts) != 1 or len(values) != len(surface.points):
-        raise FileError(f"{path}: {len(values)} values; allowed: {len(surface.points)}, one per vertex "
-                        "of SURFACE" + ", or a text file with rows x, y, z, value" * tables)
     columns = list(data.usual)
-    return None, values[:, columns], [data.names[c] for c in columns]
+    if len(data.parts) > 1:
+        raise FileError(f"{data.path}: data of {len(data.parts)} surfaces; allowed: of one")
+    part = data.parts[0]
+    surface_for(part, {"": surface}, data)
+    values, absent = on_surface(part, part.values[:, columns].astype(float), surface, data)
+    values[absent] = np.nan
+    return None, values, [data.names[c] for c in columns]
 
 
 def _read_table(path):

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import re
 import sys
 import time
@@ -18,7 +19,7 @@ _OPTIONS = {
     "correlation_length": ("length", "--length"),
     "edge_threshold": ("threshold", "--threshold"),
     "edge_width": ("width", "--width"),
-    "feature_size": ("feature_size", "FEATURE_SIZE"),
+    "feature_size": ("size", "FEATURE_SIZE"),
     "fidelity_weight": ("weight", "--weight"),
     "maximum_distance": ("within", "--within"),
     "maximum_number_of_triangles": ("maximum_triangles", "--maximum-triangles"),
@@ -40,7 +41,9 @@ def in_options(text, arguments):
         if hasattr(arguments, destination):
             text = re.sub(rf"(?<![\w./-]){setting}(?![\w./-])", option, text)  # names of files stay
     text = text.replace("to join them, set merge_coincident_points", "ParaView's filter Clean joins them")
-    return re.sub(r"(^|; )fwhm is", rf"\1{'--fwhm' if hasattr(arguments, 'fwhm') else 'FWHM'} is", text)
+    return re.sub(r"(^|; )(fwhm|kinetics|method|range|speed) is",
+                  lambda found: found[1] + ("--" + found[2] if hasattr(arguments, found[2])
+                                            else found[2].upper()) + " is", text)
 
 
 class Report:
@@ -118,13 +121,23 @@ class Report:
         self.facts.update({name: number(getattr(result, name)) for name in names})
 
     def finish(self):
+        """Print the summary or the report. The exit code."""
+        lines = [] if self.arguments.quiet else self.lines
         if self.arguments.json:
             self.facts["seconds"] = self.seconds
             self.facts["warnings"] = self.warnings
-            print(json.dumps(self.facts, indent=2, default=_plain, allow_nan=False))
-        elif not self.arguments.quiet:
-            for line in self.lines:
-                print(line)
+            lines = [json.dumps(self.facts, indent=2, default=_plain, allow_nan=False)]
+        try:
+            if getattr(sys.stdout, "errors", None) == "strict":  # names of files may have any characters
+                sys.stdout.reconfigure(errors="backslashreplace")
+            for line in lines:
+                print(line, flush=True)
+        except OSError as error:  # a full disk, or a pipe that nobody reads, where Python would flush again
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            if isinstance(error, BrokenPipeError):
+                return 1
+            return self.fail(f"standard output: cannot be written: {error.strerror}", 1)
+        return 0
 
     def fail(self, error, code):
         text = in_options(" ".join(str(error).split()) or type(error).__name__, self.arguments)

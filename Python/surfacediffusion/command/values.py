@@ -39,8 +39,8 @@ def whole_numbers(allowed, least, most=2**31 - 1):
 finite = numbers("a finite number")
 positive = numbers("a number above 0", lambda value: value > 0)
 not_negative = numbers("a number of at least 0", lambda value: value >= 0)
-whole = whole_numbers("a whole number", 1 - 2**31)
-count = whole_numbers("a whole number of at least 1", 1)
+whole = whole_numbers("a whole number from -2147483647 to 2147483647", 1 - 2**31)
+count = whole_numbers("a whole number from 1 to 2147483647", 1)
 
 
 def length(text, holds=lambda value: True, allowed="a length"):
