@@ -151,11 +151,13 @@ std::vector<Index> AddRegions(
   return components;
 }
 
-/// The lambda of AutomaticFidelity, in units of the numerics. Data without contrast need none.
+/// The lambda of AutomaticFidelity, in units of the numerics. Data without contrast need none, but
+/// above 0 their terms keep regions out that are not used.
 double FidelityOfContrast(const ModelInputs& inputs, const Segmentation::Input& input)
 {
-  const double contrast =
+  const double found =
     MeanContrast(inputs.Surface.Mesh(), input.Data, input.Means, inputs.Parallel);
+  const double contrast = found == 0.0 && input.Means.hasNaN() ? 1.0 : found;
   const double scale = inputs.Units.CoreEdgeLength() * contrast *
     MeanFidelityFactor(inputs.Surface.Mesh(), input.Data);
   return contrast > 0.0 ? AutomaticWeight / scale : 0.0;
@@ -190,17 +192,29 @@ void LimitOutliers(double unit, PointData& data, RunResult& result)
   }
 }
 
-void WarnOfEmptyRegions(const std::vector<Index>& components, RunResult& result)
+void WarnOfEmptyRegions(
+  const std::vector<Index>& components, const Values& means, RunResult& result)
 {
   std::string empty;
   int count = 0;
+  Eigen::Index used = means.rows();
   for (std::size_t k = 0; k < components.size(); ++k)
   {
-    if (components[k] == 0)
+    if (means.rows() > 0 && std::isnan(means(static_cast<Eigen::Index>(k), 0)))
+    {
+      --used;
+    }
+    else if (components[k] == 0)
     {
       empty += (empty.empty() ? "" : ", ") + std::to_string(k + 1);
       ++count;
     }
+  }
+  if (used < means.rows())
+  {
+    result.WarnOnce(Sentence("only ")
+      << used << " of " << means.rows() << " regions " << (used == 1 ? "is" : "are")
+      << " used: the data have no more different values (the means of the others are NaN)");
   }
   if (!empty.empty())
   {
@@ -234,9 +248,10 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Switch({ "AutomaticMeans", "",
                    "On: the means of the regions are found, from clusters of the values "
-                   "(k-means++) at first. Regions are numbered by ascending mean, unless there "
-                   "are seeds. Off: the means are the given ones, or the clusters if none are "
-                   "given." },
+                   "(k-means) at first. Regions are numbered by ascending mean, unless there "
+                   "are seeds. If there are fewer different values than regions, the others are "
+                   "not used, and their means are NaN. Off: the means are the given ones, or the "
+                   "clusters if none are given." },
     this->AutomaticMeans);
   visitor.Numbers(
     { "Means", "values",
@@ -371,7 +386,7 @@ std::vector<Output> SegmentationSettings::Finish(const RunState& state, RunResul
   outputs.back().Rows.conservativeResize(this->NumberOfRegions, Eigen::NoChange);
   if (isDone)
   {
-    WarnOfEmptyRegions(components, result);
+    WarnOfEmptyRegions(components, means, result);
   }
   const double gap = FindNumber(outputs, "Gap");
   if (gap > this->StopTolerance && !result.HasUnfinishedMinimum)

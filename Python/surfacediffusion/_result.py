@@ -422,7 +422,8 @@ class SegmentationResult(ModelResult):
     probabilities : ndarray, shape (n, K)
         u of the relaxed problem.
     means : ndarray, shape (K, k)
-        The means c of the regions, given or found; shape (K, 0) with given data terms.
+        The means c of the regions, given or found; shape (K, 0) with given data terms. NaN for
+        regions that are not used, since there are fewer different values.
     areas : ndarray, shape (K,)
     boundary_lengths : ndarray, shape (K,)
         Of the regions within `boundaries`.

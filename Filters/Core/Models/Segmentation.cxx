@@ -3,6 +3,7 @@
 #include "Core/Models/Segmentation.h"
 
 #include "Core/Models/TotalVariation/SimplexSplitting.h"
+#include "Core/Statistics/RegionMeans.h"
 #include "Core/Statistics/ValueRange.h"
 
 #include <algorithm>
@@ -32,6 +33,11 @@ Flags FindSeeds(const std::vector<Index>& seeds, Index vertices)
   return fixed;
 }
 
+bool IsUnused(const Values& means, Eigen::Index region)
+{
+  return std::isnan(means(region, 0));
+}
+
 } // namespace
 
 Segmentation::Segmentation(std::shared_ptr<const Assembler> assembler, Input input,
@@ -50,6 +56,7 @@ Segmentation::Segmentation(std::shared_ptr<const Assembler> assembler, Input inp
   this->U.resize(n, regions);
   this->Relaxed.resize(n, isClamped ? 1 : regions);
   this->Costs.resize(n, this->Relaxed.cols());
+  this->Farthest = this->C.hasNaN() ? LargestSquare(this->Given.Data) : 0.0;
   this->SetStart();
   this->UpdateCosts();
 
@@ -83,8 +90,12 @@ double Segmentation::DataTerm(Index i, Index region) const
     return 0.0;
   }
   const Values& f = this->Given.Data.Given;
+  if (this->C.rows() == 0)
+  {
+    return factor * f(i, region);
+  }
   return factor *
-    (this->C.rows() > 0 ? (f.row(i) - this->C.row(region)).squaredNorm() : f(i, region));
+    (IsUnused(this->C, region) ? this->Farthest : (f.row(i) - this->C.row(region)).squaredNorm());
 }
 
 /// The label of the smallest data term.
@@ -224,7 +235,7 @@ bool Segmentation::UpdateMeans()
   double change = 0.0;
   for (Eigen::Index k = 0; k < regions; ++k)
   {
-    if (this->Sums(k, components) > 0.0)
+    if (this->Sums(k, components) > 0.0 && !IsUnused(this->C, k))
     {
       this->Sums.row(k).head(components) /= this->Sums(k, components);
       change = std::max(
@@ -235,7 +246,7 @@ bool Segmentation::UpdateMeans()
       this->Sums.row(k).head(components) = this->C.row(k);
     }
   }
-  if (!(change > SettledMeans * ValueRange(this->C, reduction)))
+  if (!(change > SettledMeans * ValueRange(UsedMeans(this->C), reduction)))
   {
     return false;
   }

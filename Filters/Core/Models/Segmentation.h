@@ -47,7 +47,8 @@ public:
   {
     /// f or, without means, the r_k of K columns; finite. Missing and w = 0: chi = 0.
     PointData Data;
-    Values Means; ///< c, a row per region; no row: the r_k are given
+    /// c, a row per region, NaN for one that is not used; no row: the r_k are given.
+    Values Means;
     /// Per vertex the label 1 .. K that it keeps, or 0; may be empty.
     std::vector<Index> Seeds;
   };
@@ -102,6 +103,7 @@ private:
   Input Given;
   Settings Options;
   const ParallelFor& Parallel;
+  double Farthest = 0.0; ///< the data term of regions that are not used: no other is larger
   double EnergyFactor; ///< the energy of the minimiser over E
   Values U, C;
   Values Relaxed; ///< u as the minimiser has it: u_1 alone, or U

@@ -3,6 +3,7 @@
 #include "Core/Statistics/RegionMeans.h"
 
 #include "Core/Foundation/Random.h"
+#include "Core/Statistics/ScalarClusters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,8 @@ namespace
 {
 
 constexpr int NumberOfStarts = 8;
+constexpr double RoundOff = 1e-12; ///< relative difference of equal values
+constexpr int IterationsOfStarts = 4; ///< which show the best one
 constexpr int MaximumNumberOfIterations = 50;
 constexpr double Settled = 1e-4; ///< relative decrease of the sum of squares
 
@@ -31,6 +34,12 @@ public:
     , Distance(mesh.NumberOfVertices())
     , Nearest(static_cast<std::size_t>(mesh.NumberOfVertices()), 0)
   {
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      const double smallest =
+        this->Counts(i) ? std::pow(RoundOff, 2) * data.Given.row(i).squaredNorm() : 0.0;
+      this->SmallestDistance = std::max(this->SmallestDistance, smallest);
+    }
   }
 
   /// The means of the labels that have seeds. Returns which ones have.
@@ -52,46 +61,71 @@ public:
     return has;
   }
 
-  /// k-means++: the remaining means are values drawn with probabilities in proportion to their
-  /// squared distance from the means so far.
+  /// The known values with their weights.
+  std::vector<std::pair<double, double>> WeightedNumbers() const
+  {
+    std::vector<std::pair<double, double>> numbers;
+    for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
+    {
+      if (this->Counts(i))
+      {
+        numbers.emplace_back(this->Data.Given(i, 0), this->Weight(i));
+      }
+    }
+    return numbers;
+  }
+
+  /// Greedy k-means++: each of the remaining means is the best of a few values drawn with
+  /// probabilities in proportion to their squared distance from the means so far. Those for which no
+  /// other value is left stay as they are.
   void DrawOthers(
     Values& means, std::vector<bool> has, std::int64_t seed, const std::vector<std::int64_t>& ids)
   {
+    const int trials = 2 + static_cast<int>(std::log(static_cast<double>(means.rows())));
     this->Distance.setConstant(std::numeric_limits<double>::infinity());
     bool any = false;
     for (Eigen::Index k = 0; k < means.rows(); ++k)
     {
       if (has[static_cast<std::size_t>(k)])
       {
-        this->AddMean(means.row(k));
+        this->AddMean(&means(k, 0));
         any = true;
       }
     }
     for (Eigen::Index k = 0; k < means.rows(); ++k)
     {
-      if (!has[static_cast<std::size_t>(k)])
+      if (has[static_cast<std::size_t>(k)])
       {
-        const Index drawn = this->Draw(seed, k, ids, !any);
-        if (drawn >= 0)
-        {
-          means.row(k) = this->Data.Given.row(drawn);
-        }
-        this->AddMean(means.row(k));
+        continue;
+      }
+      double least = std::numeric_limits<double>::infinity();
+      Index best = -1;
+      for (int trial = 0; trial < (any ? trials : 1); ++trial)
+      {
+        const Index drawn = this->Draw(seed, k * trials + trial, ids, !any);
+        const double sum = drawn < 0 ? least : this->SumWith(&this->Data.Given(drawn, 0));
+        best = sum < least ? drawn : best;
+        least = std::min(least, sum);
+      }
+      if (best >= 0)
+      {
+        means.row(k) = this->Data.Given.row(best);
+        this->AddMean(&means(k, 0));
         any = true;
       }
     }
   }
 
   /// Lloyd's algorithm. Returns the sum of squares.
-  double Settle(Values& means)
+  double Settle(Values& means, int iterations = MaximumNumberOfIterations)
   {
     double sum = std::numeric_limits<double>::infinity();
-    for (int iteration = 0; iteration < MaximumNumberOfIterations; ++iteration)
+    for (int iteration = 0; iteration < iterations; ++iteration)
     {
       const double former = sum;
       sum = this->Assign(means);
       this->TakeMeans(means);
-      if (!(former - sum > Settled * former))
+      if (iteration > 0 && !(former - sum > Settled * former))
       {
         break;
       }
@@ -106,13 +140,34 @@ private:
     return this->Mesh.ControlAreas()[i] * this->Data.FidelityFactor(i);
   }
 
-  void AddMean(const Eigen::Ref<const Eigen::RowVectorXd>& mean)
+  /// Of a value from a mean.
+  double SquaredDistance(Index i, const double* mean) const
+  {
+    const double* const f = &this->Data.Given(i, 0);
+    double sum = 0.0;
+    for (Eigen::Index c = 0; c < this->Data.Given.cols(); ++c)
+    {
+      sum += (f[c] - mean[c]) * (f[c] - mean[c]);
+    }
+    return sum;
+  }
+
+  void AddMean(const double* mean)
   {
     ForEach(this->Parallel, this->Mesh.NumberOfVertices(),
       [&](Index i)
+      { this->Distance[i] = std::min(this->Distance[i], this->SquaredDistance(i, mean)); });
+  }
+
+  /// The sum of squared distances with one more mean.
+  double SumWith(const double* mean) const
+  {
+    return Sum(this->Parallel, this->Mesh.NumberOfVertices(),
+      [&](Index i)
       {
-        this->Distance[i] =
-          std::min(this->Distance[i], (this->Data.Given.row(i) - mean).squaredNorm());
+        return this->Counts(i)
+          ? this->Weight(i) * std::min(this->Distance[i], this->SquaredDistance(i, mean))
+          : 0.0;
       });
   }
 
@@ -127,7 +182,7 @@ private:
     for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
     {
       const double weight = this->Weight(i) * (first ? 1.0 : this->Distance[i]);
-      if (this->Counts(i) && weight > 0.0)
+      if (this->Counts(i) && weight > 0.0 && this->Distance[i] > this->SmallestDistance)
       {
         const double time =
           -std::log1p(-UniformRandom(seed, draw, ids[static_cast<std::size_t>(i)])) / weight;
@@ -156,7 +211,7 @@ private:
         double least = std::numeric_limits<double>::infinity();
         for (Index k = 0; k < static_cast<Index>(means.rows()); ++k)
         {
-          const double distance = (this->Data.Given.row(i) - means.row(k)).squaredNorm();
+          const double distance = this->SquaredDistance(i, &means(k, 0));
           if (seed > 0 ? k == seed - 1 : distance < least)
           {
             least = distance;
@@ -197,6 +252,7 @@ private:
   const std::vector<Index>& Seeds;
   const ParallelFor& Parallel;
   Vector Distance; ///< squared, from the nearest mean
+  double SmallestDistance = 0.0; ///< squared, of different values
   std::vector<Index> Nearest; ///< cluster per vertex
 };
 
@@ -210,8 +266,10 @@ void SortRows(Values& means)
   std::sort(rows.begin(), rows.end(),
     [](const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b)
     {
-      return std::lexicographical_compare(
-        a.data(), a.data() + a.size(), b.data(), b.data() + b.size());
+      return !std::isnan(a[0]) &&
+        (std::isnan(b[0]) ||
+          std::lexicographical_compare(
+            a.data(), a.data() + a.size(), b.data(), b.data() + b.size()));
     });
   for (Eigen::Index k = 0; k < means.rows(); ++k)
   {
@@ -226,28 +284,67 @@ Values FindRegionMeans(const TriangleMesh& mesh, const PointData& data, Index re
   const ParallelFor& parallel)
 {
   Clusters clusters(mesh, data, seeds, parallel);
-  const Values none = Values::Zero(regions, data.Given.cols());
-  Values best = none;
+  Values ofSeeds =
+    Values::Constant(regions, data.Given.cols(), std::numeric_limits<double>::quiet_NaN());
+  const std::vector<bool> has = clusters.MeansOfSeeds(ofSeeds);
+  const bool anySeed = std::find(has.begin(), has.end(), true) != has.end();
+  Values best = ofSeeds;
+  if (!anySeed && best.cols() == 1)
+  {
+    const std::vector<double> found =
+      FindScalarClusters(clusters.WeightedNumbers(), static_cast<std::size_t>(regions));
+    std::copy(found.begin(), found.end(), best.data());
+    clusters.Settle(best); // with more than a few thousand different numbers
+    return best;
+  }
   double least = std::numeric_limits<double>::infinity();
-  bool anySeed = false;
   for (int start = 0; start < NumberOfStarts; ++start)
   {
-    Values means = none;
-    const std::vector<bool> has = clusters.MeansOfSeeds(means);
-    anySeed = std::find(has.begin(), has.end(), true) != has.end();
+    Values means = ofSeeds;
     clusters.DrawOthers(means, has, MixBits(static_cast<std::uint64_t>(randomSeed)) + start, ids);
-    const double sum = clusters.Settle(means);
+    const double sum = clusters.Settle(means, IterationsOfStarts);
     if (sum < least)
     {
       least = sum;
       best = means;
     }
   }
+  clusters.Settle(best);
   if (!anySeed)
   {
     SortRows(best);
   }
   return best;
+}
+
+double LargestSquare(const PointData& data)
+{
+  Eigen::RowVectorXd low, high;
+  for (Index i = 0; i < static_cast<Index>(data.Given.rows()); ++i)
+  {
+    if (data.FidelityFactor(i) > 0.0)
+    {
+      const Eigen::RowVectorXd f = data.Given.row(i);
+      low = low.size() > 0 ? low.cwiseMin(f).eval() : f;
+      high = high.size() > 0 ? high.cwiseMax(f).eval() : f;
+    }
+  }
+  const double square = (high - low).squaredNorm();
+  return square > 0.0 ? square : 1.0;
+}
+
+Values UsedMeans(const Values& means)
+{
+  Values used(means.rows(), means.cols());
+  Eigen::Index count = 0;
+  for (Eigen::Index k = 0; k < means.rows(); ++k)
+  {
+    if (!std::isnan(means(k, 0)))
+    {
+      used.row(count++) = means.row(k);
+    }
+  }
+  return used.topRows(count);
 }
 
 double MeanContrast(
@@ -262,10 +359,13 @@ double MeanContrast(
     for (Eigen::Index k = 0; k < regions; ++k)
     {
       const double term = means.rows() > 0 ? (f.row(i) - means.row(k)).squaredNorm() : f(i, k);
-      second = std::min(second, std::max(least, term));
-      least = std::min(least, term);
+      if (!std::isnan(term))
+      {
+        second = std::min(second, std::max(least, term));
+        least = std::min(least, term);
+      }
     }
-    return second - least;
+    return std::isfinite(second) ? second - least : 0.0;
   };
   const auto sumOf = [&](const auto& function)
   {
