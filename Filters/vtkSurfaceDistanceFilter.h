@@ -31,7 +31,8 @@
  *
  * Arrays 8 and 9, AlongSpeed and AcrossSpeed need Method Eikonal. A source that the mask or a barrier excludes, or that no
  * triangle uses, does not count, with a warning; sources of port 1 near to excluded triangles do
- * not move to others. Without any source that counts, the update is an error.
+ * not move to others. With MaximumDistance 0 a warning says if half of the points on port 1 are
+ * farther from the surface than a quarter of the diagonal of its bounding box. Without any source that counts, the update is an error.
  *
  * **Method.**
  * - Heat: the heat method (K. Crane, C. Weischedel, M. Wardetzky, ACM Trans. Graph. 32(5), 2013)

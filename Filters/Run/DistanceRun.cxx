@@ -301,6 +301,10 @@ std::vector<Warning> DistanceRun::FindOwnWarnings() const
     text << this->Found.Outside << " sources are on no triangle that takes part and do not count";
     warnings.push_back({ text, inputs });
   }
+  if (!this->Found.Farness.Words().empty())
+  {
+    warnings.push_back({ this->Found.Farness, inputs });
+  }
   if (this->AllAreSources && !this->Found.AreShapes)
   {
     Sentence text("all points of the surface are sources: ");

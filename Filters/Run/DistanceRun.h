@@ -66,6 +66,7 @@ private:
     Index Given = 0; ///< of all
     Index TooFar = 0, Outside = 0;
     bool AreShapes = false;
+    Sentence Farness; ///< of shapes: a warning, or empty
   };
 
   std::vector<Warning> FindOwnWarnings() const override;

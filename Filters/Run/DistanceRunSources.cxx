@@ -5,6 +5,7 @@
 #include "Run/DistanceRun.h"
 
 #include "Run/CellFields.h"
+#include "Run/PointSamples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -170,6 +171,11 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
   set.TooFar = found.TooFar;
   set.Outside = found.Outside;
   set.Given = found.Count + found.TooFar + found.Outside;
+  if (maximumDistance == 0.0)
+  {
+    set.Farness = DescribeFarPoints("points of the sources", found.MedianDistance,
+      DiagonalOf(surface.Points(), Reduction::Serial()));
+  }
   auto nextPoint = static_cast<Index>(shapes.Places.rows());
   for (const SourcePiece& piece : found.Pieces)
   {

@@ -3,6 +3,7 @@
 #include "Run/DistanceSources.h"
 
 #include "Core/Foundation/DisjointSets.h"
+#include "Core/Foundation/RobustRange.h"
 #include "Run/Sentence.h"
 
 #include <algorithm>
@@ -83,7 +84,8 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     {
       return place;
     }
-    place.IsFar = maximumDistance > 0.0 && !(std::sqrt(nearest.SquaredDistance) <= maximumDistance);
+    place.Distance = std::sqrt(nearest.SquaredDistance);
+    place.IsFar = maximumDistance > 0.0 && !(place.Distance <= maximumDistance);
     place.Coordinates = nearest.Coordinates;
     const Index t = this->MeshTriangles[static_cast<std::size_t>(nearest.Triangle)];
     const bool isOpen = t >= 0 && !IsBarrier(triangles, t);
@@ -91,6 +93,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     return place;
   };
   ProjectedSources found;
+  std::vector<double> distances;
   const std::vector<Index> labels = shapes.FindLabels();
   std::vector<char> isOnLine(labels.size(), 0);
   for (const auto& segment : shapes.Segments)
@@ -120,6 +123,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     }
     const auto row = static_cast<Index>(i);
     const Place place = find(shapes.Places.row(row));
+    distances.push_back(place.Distance);
     ++(place.Triangle >= 0 ? found.Count : (place.IsFar ? found.TooFar : found.Outside));
     if (place.Triangle >= 0)
     {
@@ -131,8 +135,10 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
   {
     progress.Report(static_cast<double>(labels.size() + s) / all);
     const std::array<Index, 2>& ends = shapes.Segments[s];
-    this->ProjectSegment(shapes, ends, labels[static_cast<std::size_t>(ends[0])], find, found);
+    this->ProjectSegment(
+      shapes, ends, labels[static_cast<std::size_t>(ends[0])], find, found, distances);
   }
+  found.MedianDistance = Median(distances);
   return found;
 }
 
@@ -140,7 +146,8 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
 /// pieces between those that are in one triangle. Where a line leaves a triangle, samples become
 /// denser.
 void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Index, 2> ends,
-  Index label, const Finder& findPlace, ProjectedSources& found) const
+  Index label, const Finder& findPlace, ProjectedSources& found,
+  std::vector<double>& distances) const
 {
   constexpr double samplesPerEdge = 4.0;
   constexpr double mostSamples = 65536.0;
@@ -161,6 +168,7 @@ void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Ind
   };
   std::vector<Part> parts;
   Place last = find(0.0);
+  distances.push_back(last.Distance);
   for (int k = 0; k < samples; ++k)
   {
     const double from = static_cast<double>(k) / samples;
@@ -194,6 +202,7 @@ void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Ind
     }
     last = next;
   }
+  distances.push_back(last.Distance);
   isFar = isFar || last.IsFar;
   ++(found.Pieces.size() > before ? found.Count : (isFar ? found.TooFar : found.Outside));
 }

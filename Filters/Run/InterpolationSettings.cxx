@@ -45,12 +45,10 @@ void WarnOf(Index count, const char* ofOne, const char* ofSeveral, RunResult& re
 void WarnOfValues(
   const KnownValues& known, double maximumDistance, double diagonal, RunResult& result)
 {
-  constexpr double strange = 0.25;
-  if (maximumDistance == 0.0 && known.MedianDistance > strange * diagonal)
+  const Sentence far = DescribeFarPoints("points with values", known.MedianDistance, diagonal);
+  if (maximumDistance == 0.0 && !far.Words().empty())
   {
-    result.WarnOnce(Sentence("half of the points with values are ")
-      << known.MedianDistance << " or more from the surface, which is " << diagonal
-      << " large (their unit or origin may be another)");
+    result.WarnOnce(far);
   }
   if (known.TooFar > 0)
   {

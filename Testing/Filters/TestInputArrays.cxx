@@ -529,3 +529,55 @@ TEST(InputArrays, OfPiecesThatAreEditedInPlaceAreReadAgain)
   partitions->vtkObject::Modified();
   EXPECT_FALSE(Identical(resultAt(1), before));
 }
+
+/// A tetrahedron has as many points as cells.
+TEST(InputArrays, DirectionsAreChosenByTheirAssociationEvenWhereTheirNumberTellsNothing)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->InsertNextPoint(0.0, 0.0, 0.0);
+  points->InsertNextPoint(1.0, 0.0, 0.0);
+  points->InsertNextPoint(0.0, 1.2, 0.0);
+  points->InsertNextPoint(0.0, 0.0, 1.4);
+  vtkNew<vtkCellArray> faces;
+  faces->InsertNextCell({ 0, 2, 1 });
+  faces->InsertNextCell({ 0, 1, 3 });
+  faces->InsertNextCell({ 0, 3, 2 });
+  faces->InsertNextCell({ 1, 2, 3 });
+  vtkSmartPointer<vtkDataArray> results[2];
+  for (const bool onCells : { false, true })
+  {
+    for (const bool both : { false, true })
+    {
+      vtkNew<vtkPolyData> tetrahedron;
+      tetrahedron->SetPoints(points);
+      tetrahedron->SetPolys(faces);
+      AddPointArray(tetrahedron, "f", 1, [](vtkIdType i, int) { return i == 1 ? 1.0 : 0.0; });
+      const auto directions = [](int axis)
+      { return MakeArray(VTK_DOUBLE, "d", 4, 3, [=](vtkIdType, int k) { return k == axis; }); };
+      if (both || !onCells)
+      {
+        tetrahedron->GetPointData()->AddArray(directions(0));
+      }
+      if (both || onCells)
+      {
+        tetrahedron->GetCellData()->AddArray(directions(1));
+      }
+      vtkNew<vtkFVMHeatFilter> filter;
+      filter->SetInputData(tetrahedron);
+      SetInputArray(filter, 0, "f");
+      SetInputArray(filter, 2, "d", onCells);
+      filter->SetAlongDiffusivity(20.0);
+      filter->SetNumberOfTimeSteps(1);
+      filter->SetTimeStep(0.1);
+      filter->Update();
+      ASSERT_NE(Result(filter), nullptr);
+      if (both)
+      {
+        EXPECT_TRUE(Identical(Result(filter), results[onCells])) << onCells;
+      }
+      results[onCells] = Result(filter);
+    }
+  }
+  EXPECT_GT(LargestDifference(results[0], results[1]), 0.01);
+}

@@ -500,3 +500,28 @@ TEST(DistanceFilter, OfASurfaceThatIsMaskedAltogetherIsOneError)
       "1 where MaskArray excludes the surface"));
   }
 }
+
+TEST(DistanceFilter, WarnsAboutSourcesInAnotherUnit)
+{
+  const auto grid = Grid(9, 5); // in cm, and the sources in mm
+  for (const bool onLine : { false, true })
+  {
+    auto filter = MakeFilter(grid,
+      Places({ { 5.0, 5.0, 0.0 }, { 60.0, 35.0, 0.0 }, { 75.0, 10.0, 0.0 } },
+        onLine ? std::vector<std::vector<vtkIdType>>{ { 0, 1, 2 } }
+               : std::vector<std::vector<vtkIdType>>()));
+    Messages messages(filter);
+    filter->Update();
+    ASSERT_EQ(messages.Warnings.size(), 1u);
+    EXPECT_TRUE(Has(messages.Warnings[0],
+      "half of the points of the sources are 60.5392 or")) // of (60, 35)
+      << messages.Warnings[0];
+    EXPECT_TRUE(Has(messages.Warnings[0], "which is 8.94427 large (their unit or origin may be"));
+    filter->SetInputData(1, Places({ { 0.5, 0.5, 2.0 }, { 75.0, 10.0, 0.0 }, { 6.0, 3.5, -2.0 } }));
+    filter->Update(); // one of several is no matter of units
+    filter->SetMaximumDistance(100.0); // the user has said how far is far
+    filter->SetInputData(1, Places({ { 60.0, 35.0, 0.0 } }));
+    filter->Update();
+    EXPECT_EQ(messages.Warnings.size(), 1u) << messages.Warnings.back();
+  }
+}
