@@ -29,10 +29,11 @@
  * | 8 | points or cells | SpeedArray: the speed of fronts, 0 or more, in coordinate units per unit of time; on points, a triangle has the mean of its corners. Triangles of speed 0 are barriers |
  * | 9 | points | SourceTimes: T_0 of the sources of array 0 |
  *
- * Arrays 8 and 9, AlongSpeed and AcrossSpeed need Method Eikonal. A source that the mask or a barrier excludes, or that no
- * triangle uses, does not count, with a warning; sources of port 1 near to excluded triangles do
- * not move to others. With MaximumDistance 0 a warning says if half of the points on port 1 are
- * farther from the surface than a quarter of the diagonal of its bounding box. Without any source that counts, the update is an error.
+ * Arrays 8 and 9, AlongSpeed and AcrossSpeed need Method Eikonal. A source that the mask or a
+ * barrier excludes, or that no triangle uses, does not count, with a warning; sources of port 1
+ * near to excluded triangles do not move to others. Without any source that counts, the update is
+ * an error. With MaximumDistance 0 a warning says if half of the points on port 1 are farther from
+ * the surface than a quarter of the diagonal of its bounding box.
  *
  * **Method.**
  * - Heat: the heat method (K. Crane, C. Weischedel, M. Wardetzky, ACM Trans. Graph. 32(5), 2013)

@@ -11,11 +11,11 @@
  *
  * Polygons and strips are triangulated internally. Vertices and lines pass through. Ghost and
  * hidden cells are ignored, and so are cells with a hidden point
- * (vtkDataSetAttributes::HIDDENPOINT), which keeps its value. If that leaves nothing of a surface, a
- * warning says so. Each block of composite input is a
- * surface of its own, and blocks of other types pass through. Messages that do not hold for all
- * blocks name theirs, by the block's name or its indices, such as 0/2. Any type of input is
- * accepted; if it has no surface, an error names the type and the remedy.
+ * (vtkDataSetAttributes::HIDDENPOINT), which keeps its value. If that leaves nothing of a surface,
+ * a warning says so. Each block of composite input is a surface of its own, and blocks of other
+ * types pass through. Messages that do not hold for all blocks name theirs, by the block's name or
+ * its indices, such as 0/2. Any type of input is accepted; if it has no surface, an error names the
+ * type and the remedy.
  *
  * **Surfaces in pieces.** The processes of Controller (pvbatch, pvserver, MPI programs), each with
  * a piece, and the partitions of a vtkPartitionedDataSet, give the answer of the surface in one
@@ -288,8 +288,8 @@ protected:
   virtual void CompletePiece(const SurfaceBlock& piece);
 
   /// Declare a read-only value, which the updates take from the numbers among the outputs and which
-  /// process 0 shares with all. byDefault: before the first update, after one without result, and if
-  /// there is none.
+  /// process 0 shares with all. byDefault: before the first update, after one without result, and
+  /// if there is none.
   void DeclareNumber(const char* name, double byDefault = 0.0);
   /// A number of the last update, or an entry of one that is a matrix; NaN beyond its entries.
   double FindNumber(const char* name, int row = 0, int column = 0) const;

@@ -36,15 +36,15 @@
  *
  * The output has moved points, in the precision of the input's, and the point array `ReliefHeight`,
  * the heights that were used, in coordinate units; points of no triangle that takes part stay, and
- * have 0. Polygons are reversed where they face inwards or
- * against their neighbours, so that files for printing are oriented; triangle strips, and cells of
- * surfaces in pieces, are not. Normals of the input, on points or cells, that are active or have
- * the name "Normals" are computed again for the moved points, and tangents are dropped.
+ * have 0. Polygons are reversed where they face inwards or against their neighbours, so that files
+ * for printing are oriented; triangle strips, and cells of surfaces in pieces, are not. Normals of
+ * the input, on points or cells, that are active or have the name "Normals" are computed again for
+ * the moved points, and tangents are dropped.
  *
- * Errors at update are properties that are not allowed, values that are not finite where they count,
- * and relief that is larger than the surface. Surfaces in pieces, over processes and partitions, are
- * gathered and processed in process 0; see vtkSurfaceFilter. Each block of composite data is a
- * surface of its own. Results do not depend on the number of threads.
+ * Errors at update are properties that are not allowed, values that are not finite where they
+ * count, and relief that is larger than the surface. Surfaces in pieces, over processes and
+ * partitions, are gathered and processed in process 0; see vtkSurfaceFilter. Each block of
+ * composite data is a surface of its own. Results do not depend on the number of threads.
  *
  * @sa vtkTuringTextureFilter vtkQuadricDecimation
  */

@@ -45,10 +45,10 @@ void WarnOf(Index count, const char* ofOne, const char* ofSeveral, RunResult& re
 void WarnOfValues(
   const KnownValues& known, double maximumDistance, double diagonal, RunResult& result)
 {
-  const Sentence far = DescribeFarPoints("points with values", known.MedianDistance, diagonal);
-  if (maximumDistance == 0.0 && !far.Words().empty())
+  const Sentence farness = DescribeFarPoints("points with values", known.MedianDistance, diagonal);
+  if (maximumDistance == 0.0 && !farness.Words().empty())
   {
-    result.WarnOnce(far);
+    result.WarnOnce(farness);
   }
   if (known.TooFar > 0)
   {

@@ -79,7 +79,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self._numbers: dict[str, Any] = {}
         self._reported: list[str] = []
         self._warnings: list[str] = []  # of this class, in the present update
-        self._of_refinement: list[str] = []
+        self._of_surfaces: list[str] = []
         self._quiet = 0  # no observer
         choice = self.DEFAULT_CHOICE
         if choice is not None:
@@ -158,7 +158,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self.shapes.begin_update()
         refinement = Refinement(self.shapes)
         threads = _core.number_of_threads()
-        self._warnings, self._of_refinement, self._numbers = [], [], {}
+        self._warnings, self._of_surfaces, self._numbers = [], [], {}
         failure = ""
         completed = False
         try:
@@ -237,7 +237,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             names = ", ".join(f'"{name}"' for name in sorted(set(replaced)))
             self._warnings.insert(0, f"results replace arrays of the input: {names}; to keep these, set "
                                   "another ResultArrayName")
-        self._warnings += self._of_refinement
+        self._warnings += self._of_surfaces
         self._report_warnings(warnings)
         self.UpdateProgress(1.0)
         return ""
@@ -295,7 +295,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             problems.append("the input is empty; a surface of polygons or strips is needed")
         elif not selected:
             problems.append("the input has no polygons or strips; a surface is needed")
-        self._warnings += join_sentences(
+        self._of_surfaces += join_sentences(
             [("all polygons are hidden or ghost cells: nothing is computed", block.name)
              for block in selected if _is_hidden(block.input)], len(selected))
         return selected
@@ -326,11 +326,11 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others,
                           self.choices[1].name if 1 in self.choices else None)
         if refinement.longest > 0.0:
-            self._of_refinement.append(
+            self._of_surfaces.append(
                 f"refinement stopped at edges of {refinement.longest:g}, longer than {length:g}, because "
                 f"MaximumNumberOfTriangles is {limit}")
         if refinement.triangles and reason:
-            self._of_refinement.append(
+            self._of_surfaces.append(
                 f"edges were bisected, to {refinement.triangles} triangles, because {reason}")
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
