@@ -309,6 +309,8 @@ CASES = [
     ("smooth lh.surf.gii lh.curv 5 out.csv", "out.csv: .csv names no .*; allowed: no extension, since it is "
      "written as FreeSurfer curv"),
     ("smooth lh.surf.gii lh.func.gii 5 out.txt", "out.txt: named as text, but it is written as GIFTI"),
+    (CIFTI.format("a.dscalar.nii").replace("out.dscalar.nii", "out.xyz"), "out.xyz: .xyz names no format of files; "
+     "allowed: .dscalar.nii, since it is written as CIFTI"),
     ("denoise-mesh a.ply out.xyz", "out.xyz: .xyz names no format of files; allowed: .ply, since"),
     ("random-field lh.surf.gii out.txt --fwhm 5 --count 2", "out.txt: the name announces no format for 2 col"),
     ("smooth lh.surf.gii lh.func.gii 5 out.mgh", "out.mgh: named as FreeSurfer mgh, but it is "

@@ -153,6 +153,11 @@ class Printing(unittest.TestCase):
         self.succeed("texture fine.ply 8mm out.stl --relief 0.5mm --steps 20 --maximum-triangles 100")
         self.assertEqual(len(read_surface("out.stl").faces), len(read_surface("fine.ply").faces))
 
+    def test_the_limit_of_triangles_leaves_a_coarse_pattern_with_a_warning(self):
+        self.succeed("texture part.stl 4mm out.obj --relief 0.4mm --steps 20 --maximum-triangles 9000",
+                     "(?s)refinement stopped at edges of .* because --maximum-triangles is 9000")
+        self.assertLessEqual(len(read_surface("out.obj").faces), 9000)
+
     def test_carving_levels_and_overhang(self):
         self.succeed("texture part.stl 8mm out.stl --relief=-0.5mm --flank 1mm --overhang 30 "
                      "--steps 60", "lowered by more than half of that at [0-9]+ of [0-9]+ points")

@@ -18,7 +18,7 @@ from ..files.data import NO_VERTICES
 SIDES = {"left": "CortexLeft", "right": "CortexRight", "cerebellum": "Cerebellum"}
 
 
-#: Surfaces that hold data, too, and those whose formats hold none, so that no data are written as such
+#: Where data are written, they are written with their surface, or not at all
 _MESHES = (".ply", ".vtk", ".vtp", ".off", ".obj", ".stl")
 
 
@@ -81,7 +81,7 @@ def check_files(arguments):
 
 
 def refuse(arguments, options, where, allowed):
-    """ArgumentProblem if one of the options is given, which has no effect beside something else."""
+    """ArgumentProblem if one of the options is given where it has no effect."""
     for option in options:
         if getattr(arguments, option.strip("-").replace("-", "_"), None) not in (None, False):
             raise ArgumentProblem(f"{option} {where}; allowed: {allowed}")

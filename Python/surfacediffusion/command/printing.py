@@ -68,7 +68,7 @@ def print_texture(arguments, surface, report):
     with report.working("Refinement", "refine") as progress:
         fine = refine(part, size / EDGES_PER_WAVELENGTH, progress=progress,
                       maximum_number_of_triangles=most).surface
-    options.update(coarse_start_size=COARSE_START_SIZE, stop_tolerance=0.02)
+    options.update(coarse_start_size=COARSE_START_SIZE, stop_tolerance=0.02, refine_to=0)
     options["number_of_time_steps"] = arguments.steps or 2000
     with report.working("Texture", "texture") as progress:
         texture = turing_texture(fine, feature_size=size, seed=arguments.seed, progress=progress,

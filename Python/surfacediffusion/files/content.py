@@ -243,7 +243,8 @@ def check_output_name(path, kind, rows=""):
     extension = os.path.splitext(name)[1]
     is_free = kind in _NAMED_FREELY and not re.fullmatch(r"\.(csv|tsv|json|xlsx?)", extension)
     if extension and announced is None and not is_free:
-        own = ", ".join(end for end, named in EXTENSIONS.items() if named == kind) or "no extension"
+        own = f".{rows}.nii" if kind == "cifti" else ", ".join(
+            end for end, named in EXTENSIONS.items() if named == kind) or "no extension"
         raise FileError(f"{path}: {extension} names no format of files; allowed: {own}, since it is written as "
                         f"{NAMES[kind]}, the format of the input")
     if announced not in (None, kind):
