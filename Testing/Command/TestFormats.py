@@ -204,8 +204,8 @@ class NumbersOfVertices(FormatTest):
         np.testing.assert_allclose(np.load("o.npy"), np.load("p.npy"), atol=1e-5)
 
 
-class Text(FormatTest):
-    """A number per line."""
+class NumberPerLine(FormatTest):
+    """Maps as text."""
 
     def setUp(self):
         super().setUp()
