@@ -62,7 +62,7 @@ FILTERS = [
 PAGES = {  # of the repository, by their name on the site
     "Testing/Comparisons/README.md": "comparison", "Testing/Comparisons/DISTANCES.md": "distances",
     "Testing/Comparisons/FIELDS.md": "surrogates",
-    "Testing/Benchmarks/RESULTS.md": "speed",
+    "Testing/Benchmarks/RESULTS.md": "speed", "Documentation/GPU.md": "GPU",
     "Filters/DISTRIBUTED.md": "processes", "Filters/ADDING_A_MODEL.md": "adding_a_model",
     "Filters/README.md": "layers", "Examples/ParaView/GUIDE.md": "paraview",
     "Examples/FIGURES.md": "figures", "Packaging/README.md": "packages",
