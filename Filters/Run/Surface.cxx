@@ -137,8 +137,9 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
   this->Build(options, parallel, progress.Part(0.1, 1.0));
   this->ReleaseTriangles();
   this->FindVertices();
+  const bool isPoint = this->Working->NumberOfTriangles() == 0; // which is worth a warning
   this->Found.DegenerateTriangles =
-    this->Working->Diagnostics().DegenerateTriangles - this->Found.JoinedTriangles;
+    this->Working->Diagnostics().DegenerateTriangles - (isPoint ? 0 : this->Found.JoinedTriangles);
   this->Found.NonManifoldEdges = this->Working->Diagnostics().NonManifoldEdges;
   this->Found.EdgesLeft = this->Flipped ? this->Flipped->NumberOfEdgesLeft() : 0;
   if (!options.MergeCoincidentPoints)
