@@ -194,6 +194,54 @@ TEST(Interpolation, TakesTheWeightedMeanOfValuesAtOnePlace)
   }
 }
 
+TEST(Interpolation, TakesTheMeanOfValuesAtPlacesThatAreAllButOne)
+{
+  const Surface sphere = Icosphere(3);
+  const auto assembler = MakeAssembler(sphere);
+  const TriangleMesh& mesh = assembler->Mesh();
+  for (const double shift : { 1e-15, 1e-12, 1e-9, 1e-7, 1e-5 })
+  {
+    ScatteredValues data = ValuesInTriangles(mesh, Sample(mesh, sphere, SeaTemperature), 20);
+    const Index count = data.Count();
+    data.Places[0].Coordinates = { 1.0, 0.0, 0.0 };
+    data.Places[1].Coordinates = { 0.5 - shift, 0.5, shift };
+    data.Given.conservativeResize(2 * count, 1);
+    data.Weights = Vector::Ones(2 * count);
+    for (Index i = 0; i < count; ++i)
+    {
+      SurfacePoint beside = data.Places[i];
+      beside.Coordinates[0] -= shift;
+      beside.Coordinates[1] += shift;
+      if (i == 1) // beyond the edge
+      {
+        const auto corners = mesh.TriangleVertices().rowwise();
+        const auto has = [](const auto& triangle, Index v)
+        { return (triangle.array() == v).any(); };
+        const auto& [a, b, c] = data.Places[i].Vertices;
+        for (const auto triangle : corners)
+        {
+          if (has(triangle, a) && has(triangle, b) && !has(triangle, c))
+          {
+            beside = { { a, b, triangle.sum() - a - b }, data.Places[i].Coordinates };
+          }
+        }
+        ASSERT_NE(beside.Vertices[2], c);
+      }
+      data.Places.push_back(beside);
+      data.Given(count + i, 0) = data.Given(i, 0) + Gaussian(4, 0, i);
+    }
+    for (const Choice choice : { Choice::Automatic, Choice::Exact })
+    {
+      const Interpolation::Result found =
+        Interpolate(assembler, data, InterpolationSettings(choice));
+      EXPECT_EQ(found.RepeatedValues, count) << shift;
+      EXPECT_EQ(found.ContradictingPlaces, count) << shift;
+      // Without steep slopes from one to the other
+      EXPECT_LT(found.U.cwiseAbs().maxCoeff(), 2.0 * data.Given.cwiseAbs().maxCoeff()) << shift;
+    }
+  }
+}
+
 TEST(Interpolation, WithoutAnyValueIsAnError)
 {
   const auto assembler = MakeAssembler(Icosphere(1));

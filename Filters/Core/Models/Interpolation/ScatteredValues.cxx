@@ -3,6 +3,7 @@
 #include "Core/Models/Interpolation/ScatteredValues.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -13,9 +14,11 @@ namespace
 {
 
 /// Vertices and coordinates in one order, without those that do not count.
-std::array<std::pair<Index, double>, 3> Key(const SurfacePoint& place)
+using PlaceKey = std::array<std::pair<Index, double>, 3>;
+
+PlaceKey Key(const SurfacePoint& place)
 {
-  std::array<std::pair<Index, double>, 3> key;
+  PlaceKey key;
   for (std::size_t a = 0; a < 3; ++a)
   {
     const bool counts = place.Coordinates[a] != 0.0;
@@ -23,6 +26,76 @@ std::array<std::pair<Index, double>, 3> Key(const SurfacePoint& place)
   }
   std::sort(key.begin(), key.end());
   return key;
+}
+
+/// Whether no coordinate differs by more than the tolerance; those that do not count are 0.
+bool IsNear(const PlaceKey& a, const PlaceKey& b)
+{
+  const auto reaches = [](const PlaceKey& from, const PlaceKey& to)
+  {
+    return std::all_of(from.begin(), from.end(),
+      [&](const std::pair<Index, double>& own)
+      {
+        const auto other = std::find_if(to.begin(), to.end(),
+          [&](const std::pair<Index, double>& its) { return its.first == own.first; });
+        const double coordinate = other != to.end() ? other->second : 0.0;
+        return own.first < 0 || std::abs(own.second - coordinate) <= MergedValues::Tolerance;
+      });
+  };
+  return reaches(a, b) && reaches(b, a);
+}
+
+/// Of sorted keys the first one of those that are near each other, directly or by others.
+std::vector<Index> FirstOfNear(const std::vector<PlaceKey>& keys)
+{
+  std::vector<Index> first(keys.size());
+  std::iota(first.begin(), first.end(), 0);
+  const auto rootOf = [&](Index i)
+  {
+    while (first[i] != i)
+    {
+      i = first[i] = first[first[i]];
+    }
+    return i;
+  };
+  // Places that are near have a vertex in common at which both have a coordinate above this one.
+  constexpr double large = 0.3;
+  std::vector<std::pair<std::pair<Index, double>, Index>> entries;
+  for (Index i = 0; i < static_cast<Index>(keys.size()); ++i)
+  {
+    if (i > 0 && keys[i] == keys[i - 1])
+    {
+      first[i] = first[i - 1];
+      continue;
+    }
+    for (const std::pair<Index, double>& entry : keys[i])
+    {
+      if (entry.second > large)
+      {
+        entries.emplace_back(entry, i);
+      }
+    }
+  }
+  std::sort(entries.begin(), entries.end());
+  for (auto a = entries.begin(); a != entries.end(); ++a)
+  {
+    for (auto b = a + 1; b != entries.end() && b->first.first == a->first.first &&
+         b->first.second - a->first.second <= MergedValues::Tolerance;
+         ++b)
+    {
+      if (IsNear(keys[a->second], keys[b->second]))
+      {
+        const Index one = rootOf(a->second);
+        const Index other = rootOf(b->second);
+        first[std::max(one, other)] = std::min(one, other);
+      }
+    }
+  }
+  for (Index i = 0; i < static_cast<Index>(keys.size()); ++i)
+  {
+    first[i] = rootOf(i);
+  }
+  return first;
 }
 
 } // namespace
@@ -59,17 +132,30 @@ ScatteredValues ScatteredValues::AtVertices(const Values& f, const Flags& known)
 MergedValues::MergedValues(const ScatteredValues& given)
 {
   const Index count = given.Count();
-  std::vector<std::array<std::pair<Index, double>, 3>> keys(count);
+  std::vector<PlaceKey> keys(count);
   std::transform(given.Places.begin(), given.Places.end(), keys.begin(), Key);
   std::vector<Index> order(count);
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
     [&](Index a, Index b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
+  std::vector<PlaceKey> sorted;
+  for (const Index i : order)
+  {
+    sorted.push_back(keys[i]);
+  }
+  const std::vector<Index> first = FirstOfNear(sorted);
+  std::vector<Index> place(count);
+  for (Index i = 0; i < count; ++i)
+  {
+    place[order[i]] = first[i];
+  }
+  std::stable_sort(
+    order.begin(), order.end(), [&](Index a, Index b) { return place[a] < place[b]; });
   this->Rows.Given.resize(count, given.Given.cols());
   this->Rows.Weights.resize(count);
   for (Index begin = 0, end = 0; begin < count; begin = end)
   {
-    while (end < count && keys[order[end]] == keys[order[begin]])
+    while (end < count && place[order[end]] == place[order[begin]])
     {
       ++end;
     }

@@ -36,9 +36,13 @@ struct ScatteredValues
 };
 
 /// The values with one row for all that have the same place: the weighted mean of their values with
-/// the sum of their weights, which have the same fit.
+/// the sum of their weights, which have the same fit. A place is the same if no barycentric
+/// coordinate differs by more than the tolerance, that is within about 1e-4 of an edge: values so
+/// near that differ make the system all but singular.
 struct MergedValues
 {
+  static constexpr double Tolerance = 1e-4;
+
   explicit MergedValues(const ScatteredValues& given);
 
   ScatteredValues Rows;
