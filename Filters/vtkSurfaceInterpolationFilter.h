@@ -27,7 +27,8 @@
  * - without an input on port 1, those of the data (input array 0) that are neither NaN nor masked.
  *   A cell has its value in the middle of its largest triangle.
  *
- * Several values at one place count as their weighted mean; a warning reports it if they differ.
+ * Several values at one place, up to about 1e-4 of an edge, count as their weighted mean; a warning
+ * reports it if they differ.
  * With composite data, each block takes all values.
  *
  * **Input arrays** in addition to those of the superclass (0, the data, 1, the mask, and 2,
@@ -44,7 +45,9 @@
  * each component by generalised cross-validation (P. Craven, G. Wahba, Numer. Math. 31, 1979) or,
  * with a NoiseLevel, by the unbiased estimate of the risk (C. Mallows, Technometrics 15, 1973). Up
  * to 300 values are decomposed; with more, traces are those of random vectors of signs
- * (RandomSeed). Fewer than three places with values are held.
+ * (RandomSeed). Of few values cross-validation often takes noise for signal: if up to 300 values
+ * would be all but held, mu is at least that with the greatest restricted likelihood (G. Wahba,
+ * Ann. Statist. 13, 1985). Fewer than three places with values are held.
  *
  * **The mean.** With CorrelationLength 0, constants have no energy. With CorrelationLength 1/kappa,
  * values are measured from their weighted mean, to which u returns beyond that distance from the

@@ -150,8 +150,8 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
     this->Exact);
   visitor.Switch({ "AutomaticSmoothing", "",
                    "Without Exact. On: find mu, the strength of the smoothing, by generalised "
-                   "cross-validation, or from NoiseLevel if that is above 0. Off: mu is "
-                   "Smoothing." },
+                   "cross-validation (of few values with the restricted likelihood as a lower "
+                   "bound), or from NoiseLevel if that is above 0. Off: mu is Smoothing." },
     this->AutomaticSmoothing);
   visitor.Number({ "NoiseLevel", "values",
                    "The standard deviation of the noise of values with weight 1, in the unit of "

@@ -127,6 +127,38 @@ TEST(InterpolationField, SmoothsNoiseOnEveryMesh)
   }
 }
 
+/// Values with half the deviation of the field as noise must not be taken for exact ones.
+TEST(InterpolationField, SeldomTakesFewNoisyValuesForExactOnes)
+{
+  constexpr double noise = 4.5;
+  constexpr int samples = 100;
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Values field = Sample(mesh, s, SeaTemperature);
+  for (const auto& [count, most] : { std::pair(15, 0.1), std::pair(20, 0.1), std::pair(40, 0.05) })
+  {
+    int exact = 0;
+    double misfitOfExact = 0.0;
+    for (int sample = 0; sample < samples; ++sample)
+    {
+      ScatteredValues data = ValuesInTriangles(mesh, field, count, sample);
+      const Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+      const double misfit = Interpolate(assembler, data, settings).Columns[0].Residual;
+      misfitOfExact = std::max(misfitOfExact, count < 40 ? 0.0 : misfit);
+      for (Index i = 0; i < count; ++i)
+      {
+        data.Given(i, 0) += noise * Gaussian(sample, 0, i);
+      }
+      exact += Interpolate(assembler, data, settings).Columns[0].NoiseLevel < 0.1 * noise;
+    }
+    std::printf("%d values: %d of %d samples as exact; misfit of exact ones %.2g\n", count, exact,
+      samples, misfitOfExact);
+    EXPECT_LE(exact, most * samples) << count;
+    EXPECT_LT(misfitOfExact, 0.1) << count;
+  }
+}
+
 TEST(InterpolationField, SmoothsNoiseBesideNeedlesAsWithoutThem)
 {
   const Surface s = Icosphere(4);

@@ -15,6 +15,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
+constexpr double Resolved = 1e-8; ///< difference of eigenvalues from 0 and 1
+constexpr double PriorExponent = 0.1; ///< a of the likelihood
+
 /// W^(1/2) B H^-1 B^T W^(1/2) v.
 Values ApplyInfluence(const SmoothFit& fit, const Vector& roots, const Values& v)
 {
@@ -222,23 +225,29 @@ double InfluenceSpectrum::Score(double mu, Eigen::Index column) const
 
 double InfluenceSpectrum::BestSmoothing(Eigen::Index column, double noise) const
 {
-  const auto cost = [&](double exponent)
+  if (noise > 0.0)
   {
-    const double mu = this->Mu * std::exp(exponent);
-    return noise > 0.0
-      ? this->Residual(mu, column) + 2.0 * noise * noise * this->DegreesOfFreedom(mu)
-      : this->Score(mu, column);
-  };
+    return this->Minimiser(Criterion::Risk, column, noise);
+  }
+  constexpr double most = 0.9;
+  const double mu = this->Minimiser(Criterion::Score, column, noise);
+  const bool isDoubtful = this->IsExact && this->DegreesOfFreedom(mu) > most * this->Count;
+  return isDoubtful ? std::max(mu, this->Minimiser(Criterion::Likelihood, column, noise)) : mu;
+}
+
+double InfluenceSpectrum::Minimiser(Criterion criterion, Eigen::Index column, double noise) const
+{
+  const auto cost = [&](double exponent)
+  { return this->CostOf(criterion, this->Mu * std::exp(exponent), column, noise); };
   // The range in which degrees of freedom change, as far as it is resolved.
   constexpr double margin = 4.6; // a factor of 100
   constexpr double farthest = 40.0;
   constexpr double nearest = 4.6;
-  constexpr double resolved = 1e-8;
   double low = 0.0;
   double high = 0.0;
   for (const auto& [share, weight] : this->Trace)
   {
-    if (share > resolved && share < 1.0 - resolved && weight > 0.0)
+    if (share > Resolved && share < 1.0 - Resolved && weight > 0.0)
     {
       const double own = std::log(share / (1.0 - share)); // of its mu over mu_0
       low = std::min(low, own);
@@ -261,30 +270,80 @@ double InfluenceSpectrum::BestSmoothing(Eigen::Index column, double noise) const
   for (int i = 0; i < 60; ++i)
   {
     const double middle = 0.5 * (left + right);
-    (this->Slope(this->Mu * std::exp(middle), column, noise) > 0.0 ? right : left) = middle;
+    const double mu = this->Mu * std::exp(middle);
+    (this->SlopeOf(criterion, mu, column, noise) > 0.0 ? right : left) = middle;
   }
   return this->Mu * std::exp(0.5 * (left + right));
 }
 
-/// Of the score or the risk by log(mu), up to a positive factor.
-double InfluenceSpectrum::Slope(double mu, Eigen::Index column, double noise) const
+double InfluenceSpectrum::CostOf(
+  Criterion criterion, double mu, Eigen::Index column, double noise) const
+{
+  if (criterion == Criterion::Score)
+  {
+    return this->Score(mu, column);
+  }
+  if (criterion == Criterion::Risk)
+  {
+    return this->Residual(mu, column) + 2.0 * noise * noise * this->DegreesOfFreedom(mu);
+  }
+  double square = 0.0;
+  for (const auto& [share, weight] : this->Columns[static_cast<std::size_t>(column)])
+  {
+    square += weight * Left(share, mu / this->Mu);
+  }
+  double logarithms = 0.0;
+  double count = 0.0;
+  for (const auto& [share, weight] : this->Trace)
+  {
+    if (share < 1.0 - Resolved)
+    {
+      logarithms += weight * std::log(Left(share, mu / this->Mu));
+      count += weight;
+    }
+  }
+  const double prior = PriorExponent * std::log(mu);
+  return count > 0.0 ? std::log(square) - (logarithms + prior) / count : 0.0;
+}
+
+/// Of CostOf() by log(mu), up to a positive factor.
+double InfluenceSpectrum::SlopeOf(
+  Criterion criterion, double mu, Eigen::Index column, double noise) const
 {
   const double ratio = mu / this->Mu;
-  double residual = 0.0;
-  double freedom = 0.0;
+  double square = 0.0;
+  double ofSquare = 0.0;
+  double ofResidual = 0.0;
   for (const auto& [share, weight] : this->Columns[static_cast<std::size_t>(column)])
   {
     const double left = Left(share, ratio);
-    residual += 2.0 * weight * left * left * (1.0 - left);
+    square += weight * left;
+    ofSquare += weight * left * (1.0 - left);
+    ofResidual += 2.0 * weight * left * left * (1.0 - left);
   }
+  double count = 0.0;
+  double ofLogarithms = 0.0;
+  double ofFreedom = 0.0;
   for (const auto& [share, weight] : this->Trace)
   {
     const double left = Left(share, ratio);
-    freedom -= weight * left * (1.0 - left);
+    ofFreedom -= weight * left * (1.0 - left);
+    if (share < 1.0 - Resolved)
+    {
+      count += weight;
+      ofLogarithms += weight * (1.0 - left);
+    }
   }
-  return noise > 0.0 ? residual + 2.0 * noise * noise * freedom
-                     : residual * (this->Count - this->DegreesOfFreedom(mu)) +
-      2.0 * this->Residual(mu, column) * freedom;
+  switch (criterion)
+  {
+    case Criterion::Risk:
+      return ofResidual + 2.0 * noise * noise * ofFreedom;
+    case Criterion::Likelihood:
+      return ofSquare * count - square * (ofLogarithms + PriorExponent);
+    default:
+      return ofResidual * (this->Count - this->DegreesOfFreedom(mu)) +
+        2.0 * this->Residual(mu, column) * ofFreedom;
+  }
 }
 
 } // namespace SurfaceDiffusion

@@ -35,7 +35,7 @@ public:
   enum class Choice
   {
     Exact, ///< the values hold
-    Automatic, ///< mu by generalised cross-validation
+    Automatic, ///< mu by generalised cross-validation; see InfluenceSpectrum::BestSmoothing()
     NoiseLevel, ///< mu by the noise level
     Given ///< mu
   };
