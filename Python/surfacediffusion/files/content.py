@@ -222,10 +222,13 @@ def silent_log(name="nibabel.global"):
 
 def kind_of_name(path) -> str | None:
     """The kind that the name of an output file announces; None if it announces none."""
-    name = os.fspath(path).lower()
-    if name.endswith(".gz"):
-        name = name[:-3]
+    name = _plain_name(path)
     return "cifti" if _CIFTI_NAME.search(name) else EXTENSIONS.get(os.path.splitext(name)[1])
+
+
+def _plain_name(path):
+    """Without compression, and without what AFNI adds: a.gii of a.gii.dset."""
+    return re.sub(r"\.(gz|dset)$", "", os.path.basename(os.fspath(path)).lower())
 
 
 def check_output_name(path, kind, rows=""):
@@ -239,8 +242,7 @@ def check_output_name(path, kind, rows=""):
                             "format of the input")
         if announced == "nifti":
             return
-    name = re.sub(r"\.gz$", "", os.path.basename(os.fspath(path)).lower())
-    extension = os.path.splitext(name)[1]
+    extension = os.path.splitext(_plain_name(path))[1]
     is_free = kind in _NAMED_FREELY and not re.fullmatch(r"\.(csv|tsv|json|xlsx?)", extension)
     if extension and announced is None and not is_free:
         own = f".{rows}.nii" if kind == "cifti" else ", ".join(
