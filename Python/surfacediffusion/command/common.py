@@ -27,7 +27,7 @@ NEW_FORMATS = (".func.gii, .shape.gii, .mgh, .mgz, .npy, .txt for one column, or
 
 
 def paragraph(text, width):
-    return textwrap.fill(text, width) + "\n"
+    return textwrap.fill(text, width, break_on_hyphens=False) + "\n"
 
 
 FILES = f"""
