@@ -72,6 +72,9 @@ class TestPythonPlugin(unittest.TestCase):
     def test_special_input_gives_the_same_bits(self):
         self.compare("open/", "converted", "empty array/", "polygons")
 
+    def test_what_is_left_out_gives_the_same_bits_and_messages(self):
+        self.compare("left out/")
+
     def test_surfaces_in_pieces_give_the_same_bits_and_messages(self):
         self.compare("pieces ")
 

@@ -18,7 +18,7 @@ from partitions import blocks, collection, copy_of, give_ids, partitioned, split
 from paraview import servermanager, simple
 from plugin_testing import filter_names, noisy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdTypeArray, vtkPoints
+from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdTypeArray, vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     vtkCellArray, vtkDataObject, vtkPolyData, vtkUnstructuredGrid,
 )
@@ -275,6 +275,43 @@ def run_kinds_of_input():
     run("TuringTextureFilter", sphere_with_arrays(), "feature", FeatureSize=0.3)
 
 
+def hide(data, points):
+    flags = np.zeros(data.GetNumberOfPoints(), dtype=np.uint8)
+    flags[points] = 2
+    array = numpy_to_vtk(flags, deep=True)
+    array.SetName("vtkGhostType")
+    data.GetPointData().AddArray(array)
+    return producer(data)
+
+
+def run_left_out():
+    """Hidden points of second inputs and of surfaces, sources far away, and blocks with text in place of
+    numbers."""
+    for number, points in enumerate(([2, 9], slice(None))):
+        run("SurfaceInterpolationFilter", sphere_with_arrays(), "left out/%d" % number,
+            PointsWithValues=hide(scattered(), points))
+        run("SurfaceDistanceFilter", sphere_with_arrays(), "left out/%d" % number,
+            Sources=hide(scattered(), points))
+    far = copy_of(scattered())
+    vtk_to_numpy(far.GetPoints().GetData())[:] *= 100.0
+    run("SurfaceDistanceFilter", sphere_with_arrays(), "left out/far", Sources=producer(far))
+    run("SurfaceDerivativesFilter", typed(np.uint8), "left out/rgba", InputArray=["POINTS", "rgba"])
+    sphere = dataset(sphere_with_arrays())
+    for name in filter_names():
+        run(name, hide(copy_of(sphere), slice(None)), "left out/all")
+        text = copy_of(sphere)
+        for array in ("f", "ends"):
+            names = vtkStringArray()
+            names.SetName(array)
+            names.SetNumberOfValues(text.GetNumberOfPoints())
+            text.GetPointData().RemoveArray(array)
+            text.GetPointData().AddArray(names)
+        properties = {"InputArray": ["POINTS", "f"]} if name != "SurfaceDistanceFilter" else {}
+        probe = getattr(servermanager.filters, name)()
+        if not set(properties) - set(probe.ListProperties()) and name != "HarmonicMapFilter":
+            run(name, producer(blocks([[copy_of(sphere)], [text]])), "left out/text", **properties)
+
+
 def run_special_input():
     """What other lists have not: a surface without walls, arrays that ParaView converts, an array without
     tuples, and polygons of many corners at every step."""
@@ -477,8 +514,8 @@ def list_arrays(data):
 begin = time.perf_counter()
 simple.LoadPlugin(sys.argv[1], remote=False, ns=globals())
 seconds = time.perf_counter() - begin
-steps = (list_properties, run_clicks, run_kinds_of_input, run_special_input, run_pieces, run_edits, run_times,
-         run_faults, run_aborts)
+steps = (list_properties, run_clicks, run_kinds_of_input, run_left_out, run_special_input, run_pieces, run_edits,
+         run_times, run_faults, run_aborts)
 for step in steps:
     step()
 arrays = {key: value for key, value in found.items() if isinstance(value, np.ndarray)}
