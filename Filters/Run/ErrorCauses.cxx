@@ -82,19 +82,11 @@ Sentence ExplainError(Settings& settings, const std::runtime_error& error)
          << Word::Setting("MaximumNumberOfIterations") << ", or set " << Word::Setting("Solver")
          << " to " << Word::Choice("Solver", SolverMethod::Direct, "Direct");
   }
-  else if (dynamic_cast<const NotPositiveDefinite*>(&error))
+  else if (dynamic_cast<const NotPositiveDefinite*>(&error) &&
+    FindValue(settings, "IntrinsicDelaunay") == 0.0)
   {
-    if (FindValue(settings, "IntrinsicDelaunay") == 0.0)
-    {
-      text << "; if triangles are all but flat, " << Word::Setting("IntrinsicDelaunay")
-           << " makes it so";
-    }
-    if (FindValue(settings, "MergeCoincidentPoints") == 0.0 ||
-      FindValue(settings, "MergeTolerance") == 0.0)
-    {
-      text << "; if points coincide up to round-off, " << Word::Setting("MergeCoincidentPoints")
-           << " with a " << Word::Setting("MergeTolerance") << " above 0 does";
-    }
+    text << "; if triangles are all but flat, " << Word::Setting("IntrinsicDelaunay")
+         << " makes it so";
   }
   else if (dynamic_cast<const UnboundedGrowth*>(&error))
   {
