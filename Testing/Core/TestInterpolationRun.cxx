@@ -397,6 +397,22 @@ TEST(InterpolationRun, ReturnsToTheMeanBeyondTheCorrelationLength)
   EXPECT_NEAR(last(), 1.4, 0.01); // of 1, 1.2, ... 1.8
 }
 
+TEST(InterpolationRun, TakesPolesWhosePointsCoincideUpToRoundOff)
+{
+  // The last rows of a parametric sphere are at one pole.
+  constexpr double pi = 3.14159265358979323846;
+  TestSurface s = Strip(30, 30, 2.0 * pi, 1.0);
+  for (auto x : s.Vertices.rowwise())
+  {
+    const double angle = pi * std::min(1.0, 1.2 * x[1]);
+    const double radius = std::sin(angle) + 1e-16 * x[1];
+    x = Eigen::RowVector3d(radius * std::cos(x[0]), radius * std::sin(x[0]), std::cos(angle));
+  }
+  Fields fields;
+  fields.Data.Values = Sparse(s, 7);
+  EXPECT_EQ(ErrorOf(s, fields, InterpolationSettings()), "");
+}
+
 TEST(InterpolationRun, RefusesSettingsThatExcludeEachOther)
 {
   const TestSurface s = Icosphere(2);
