@@ -32,7 +32,7 @@ RESULTS = {
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.69302, ("POINTS", "fInterpolated")),
     "SurfaceRandomFieldFilter": (("POINTS", "RandomField"), 0.875830508, ("POINTS", "RandomField")),
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
-    "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706646, ("POINTS", "RegionId")),
+    "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.707249, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
     "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "u1")),
 }
