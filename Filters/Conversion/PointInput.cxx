@@ -55,7 +55,7 @@ std::vector<double> Flat(const Matrix& matrix)
   return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
 }
 
-/// Hidden points have no value, whatever stands there.
+/// Replaces the values of hidden points by NaN, which is no value.
 void ForgetHidden(const std::vector<char>& hidden, PointSamples& samples)
 {
   for (std::size_t i = 0; i < hidden.size(); ++i)

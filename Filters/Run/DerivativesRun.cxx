@@ -227,13 +227,8 @@ Values DerivativesRun::ReadAtVertices(const Fields& fields, const Derivatives& o
   Values u;
   if (fields.Data.OnCells)
   {
-    Vector weights = Vector::Ones(fields.Data.Values.rows());
-    for (std::size_t c = 0; c < this->MissingRows.size(); ++c)
-    {
-      weights[static_cast<Eigen::Index>(c)] = this->MissingRows[c] ? 0.0 : 1.0;
-    }
     u = FitCells(surface.InputMesh(), MakeCellTransfer(surface, fields, this->Parallel), positions,
-      operators.Normals().OfVertices, fields.Data.Values, weights, this->Parallel);
+      operators.Normals().OfVertices, fields.Data.Values, this->Parallel);
   }
   else
   {

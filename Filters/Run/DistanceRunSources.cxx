@@ -5,7 +5,6 @@
 #include "Run/DistanceRun.h"
 
 #include "Run/CellFields.h"
-#include "Run/PointSamples.h"
 
 #include <algorithm>
 #include <cmath>

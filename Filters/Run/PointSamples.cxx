@@ -317,19 +317,6 @@ void ProjectSamples(const SurfaceArrays& arrays, double maximumDistance, Fields&
   }
 }
 
-Sentence DescribeFarPoints(const char* points, double medianDistance, double diagonal)
-{
-  constexpr double strange = 0.25;
-  Sentence text;
-  if (medianDistance > strange * diagonal)
-  {
-    text << "half of the " << points << " are " << medianDistance
-         << " or more from the surface, which is " << diagonal
-         << " large (their unit or origin may be another)";
-  }
-  return text;
-}
-
 KnownValues FindKnownValues(
   const Surface& surface, const Fields& fields, bool inpaint, double unit, double maximumDistance)
 {

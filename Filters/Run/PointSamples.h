@@ -53,10 +53,6 @@ struct KnownValues
   bool AreSamples = false;
 };
 
-/// The warning that points with this median distance from the surface are strangely far, compared
-/// with the diagonal of its bounding box; otherwise empty. points: what they are called.
-Sentence DescribeFarPoints(const char* points, double medianDistance, double diagonal);
-
 /// The known values of the fields, divided by `unit`: of samples at their places, of points at
 /// their vertices, and of cells in the middle of their largest triangle, where linear functions
 /// have the value of CellTransfer::ToCells() on triangles. Equal values of merged points count

@@ -140,7 +140,7 @@ Vector ReliefRun::MakeHeights(
   {
     if (surface.VertexOf(static_cast<Index>(p)) < 0)
     {
-      values[p] = 0.0; // whatever stands there: the point stays
+      values[p] = 0.0; // not used: the point is not moved, and may have NaN
     }
     else if (!std::isfinite(values[p]))
     {

@@ -197,14 +197,11 @@ void WarnOfEmptyRegions(
 {
   std::string empty;
   int count = 0;
-  Eigen::Index used = means.rows();
+  const Eigen::Index used = UsedMeans(means).rows();
   for (std::size_t k = 0; k < components.size(); ++k)
   {
-    if (means.rows() > 0 && std::isnan(means(static_cast<Eigen::Index>(k), 0)))
-    {
-      --used;
-    }
-    else if (components[k] == 0)
+    const bool isUsed = means.rows() == 0 || IsUsed(means, static_cast<Eigen::Index>(k));
+    if (isUsed && components[k] == 0)
     {
       empty += (empty.empty() ? "" : ", ") + std::to_string(k + 1);
       ++count;

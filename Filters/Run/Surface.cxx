@@ -129,17 +129,14 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
 {
   CheckArrays(this->Arrays, options, parallel);
   this->SelectTriangles(options);
-  if (options.JoinShortEdges)
-  {
-    this->JoinPoints(parallel);
-  }
+  const Index joined = options.JoinShortEdges ? this->JoinPoints(parallel) : 0;
   progress.Report(0.1);
   this->Build(options, parallel, progress.Part(0.1, 1.0));
   this->ReleaseTriangles();
   this->FindVertices();
   const bool isPoint = this->Working->NumberOfTriangles() == 0; // which is worth a warning
   this->Found.DegenerateTriangles =
-    this->Working->Diagnostics().DegenerateTriangles - (isPoint ? 0 : this->Found.JoinedTriangles);
+    this->Working->Diagnostics().DegenerateTriangles - (isPoint ? 0 : joined);
   this->Found.NonManifoldEdges = this->Working->Diagnostics().NonManifoldEdges;
   this->Found.EdgesLeft = this->Flipped ? this->Flipped->NumberOfEdgesLeft() : 0;
   if (!options.MergeCoincidentPoints)
@@ -203,35 +200,38 @@ void Surface::SelectTriangles(const SurfaceOptions& options)
   }
 }
 
-/// The ends of short edges of the selected triangles become one point.
-void Surface::JoinPoints(const ParallelFor& parallel)
+/// The ends of short edges of the selected triangles become one point. Returns the number of
+/// triangles that have lost their area by that.
+Index Surface::JoinPoints(const ParallelFor& parallel)
 {
   SurfaceDiffusion::Triangles& triangles = this->Arrays.Triangles;
   const std::vector<Index> joined = JoinShortEdges(this->Arrays.Points, triangles, parallel);
   if (joined.empty())
   {
-    return;
+    return 0;
   }
   const auto hasTwoEqual = [](const auto& corners)
   { return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]; };
   const auto representativeOf = [&](Index point)
   { return joined[static_cast<std::size_t>(point)]; };
+  Index lost = 0;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
   {
     auto corners = triangles.row(t);
     const bool hadTwoEqual = hasTwoEqual(corners);
     corners = corners.unaryExpr(representativeOf).eval();
-    this->Found.JoinedTriangles += hasTwoEqual(corners) && !hadTwoEqual;
+    lost += hasTwoEqual(corners) && !hadTwoEqual;
   }
   if (this->Representative.empty())
   {
     this->Representative = joined;
-    return;
+    return lost;
   }
   for (Index& point : this->Representative)
   {
     point = representativeOf(point);
   }
+  return lost;
 }
 
 void Surface::Build(
@@ -370,6 +370,19 @@ double DiagonalOf(const Points& points, const Reduction& processes)
   }
   processes.Max(ends.data(), 6);
   return std::hypot(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
+}
+
+Sentence DescribeFarPoints(const char* points, double medianDistance, double diagonal)
+{
+  constexpr double strange = 0.25;
+  Sentence text;
+  if (medianDistance > strange * diagonal)
+  {
+    text << "half of the " << points << " are " << medianDistance
+         << " or more from the surface, which is " << diagonal
+         << " large (their unit or origin may be another)";
+  }
+  return text;
 }
 
 TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vectors)

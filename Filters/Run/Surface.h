@@ -46,8 +46,9 @@ struct SurfaceOptions
 /// Counts of the parts of a surface that are ignored or look unintended.
 struct SurfaceDiagnostics
 {
-  Index DegenerateTriangles = 0; ///< left out, so that the surface may be cut there
-  Index JoinedTriangles = 0; ///< without an area, too, but their short edges are points
+  /// Left out, so that the surface may be cut there. Those of short edges, which are points, count
+  /// only if no other triangle is left.
+  Index DegenerateTriangles = 0;
   Index UnusedPoints = 0; ///< not in any participating triangle; excluded points do not count
   Index NonManifoldEdges = 0;
   Index CoincidentBoundaryPoints = 0; ///< counted if merging is off
@@ -111,7 +112,7 @@ public:
 
 private:
   void SelectTriangles(const SurfaceOptions& options);
-  void JoinPoints(const ParallelFor& parallel);
+  Index JoinPoints(const ParallelFor& parallel);
   void Build(
     const SurfaceOptions& options, const ParallelFor& parallel, const ProgressMonitor& progress);
   void ReleaseTriangles();
@@ -139,5 +140,9 @@ TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vec
 
 /// The diagonal of the bounding box of all pieces, in coordinate units.
 double DiagonalOf(const Points& points, const Reduction& processes);
+
+/// The warning that points with this median distance from the surface are strangely far, compared
+/// with that diagonal; otherwise empty. points: what they are called.
+Sentence DescribeFarPoints(const char* points, double medianDistance, double diagonal);
 
 } // namespace SurfaceDiffusion

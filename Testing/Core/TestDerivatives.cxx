@@ -45,6 +45,14 @@ Values Sample(const Drawn& s, Eigen::Index columns,
   return values;
 }
 
+/// Of the first triangle.
+Eigen::RowVector3d NormalOf(const Drawn& s)
+{
+  return (s.Vertices.row(s.Faces(0, 1)) - s.Vertices.row(s.Faces(0, 0)))
+    .cross(s.Vertices.row(s.Faces(0, 2)) - s.Vertices.row(s.Faces(0, 0)))
+    .normalized();
+}
+
 double RootMeanSquareOf(const Values& values)
 {
   return std::sqrt(values.squaredNorm() / static_cast<double>(values.rows()));
@@ -199,10 +207,7 @@ TEST(Derivatives, HaveTheirOrders)
 TEST(Derivatives, OfConstantsAndOfLinearFunctionsOnPlanesAreExact)
 {
   const Drawn s = UnevenPlate();
-  const Eigen::RowVector3d normal =
-    (s.Vertices.row(s.Faces(0, 1)) - s.Vertices.row(s.Faces(0, 0)))
-      .cross(s.Vertices.row(s.Faces(0, 2)) - s.Vertices.row(s.Faces(0, 0)))
-      .normalized();
+  const Eigen::RowVector3d normal = NormalOf(s);
   const Eigen::RowVector3d slope(0.3, -1.2, 0.7);
   const Eigen::RowVector3d tangential = slope - slope.dot(normal) * normal;
   const Values u = Sample(
@@ -240,10 +245,7 @@ TEST(Derivatives, OfConstantsAndOfLinearFunctionsOnPlanesAreExact)
 TEST(Derivatives, OfLinearFunctionsOnCellsAreExactOnPlanes)
 {
   const Drawn s = UnevenPlate();
-  const Eigen::RowVector3d normal =
-    (s.Vertices.row(s.Faces(0, 1)) - s.Vertices.row(s.Faces(0, 0)))
-      .cross(s.Vertices.row(s.Faces(0, 2)) - s.Vertices.row(s.Faces(0, 0)))
-      .normalized();
+  const Eigen::RowVector3d normal = NormalOf(s);
   const Eigen::RowVector3d slope(0.3, -1.2, 0.7);
   const Eigen::RowVector3d tangential = slope - slope.dot(normal) * normal;
   Values u(s.Faces.rows(), 1);

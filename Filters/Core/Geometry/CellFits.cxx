@@ -54,7 +54,7 @@ Vector WeightsOfFit(const std::vector<Place>& places, const Vector& ofSquares)
 } // namespace
 
 Values FitCells(const TriangleMesh& mesh, const CellTransfer& transfer, const Points& positions,
-  const Points& normals, const Values& ofCells, const Vector& weights, const ParallelFor& parallel)
+  const Points& normals, const Values& ofCells, const ParallelFor& parallel)
 {
   const Values centroids = transfer.ToCells(positions);
   Flags atBoundary = Flags::Constant(mesh.NumberOfVertices(), false);
@@ -67,13 +67,7 @@ Values FitCells(const TriangleMesh& mesh, const CellTransfer& transfer, const Po
     [&](Index i)
     {
       std::vector<Index> cells;
-      const auto add = [&](Index cell)
-      {
-        if (weights[cell] > 0.0)
-        {
-          cells.push_back(cell);
-        }
-      };
+      const auto add = [&](Index cell) { cells.push_back(cell); };
       transfer.ForEachCellAround(i, add);
       if (atBoundary[i])
       {
@@ -84,10 +78,6 @@ Values FitCells(const TriangleMesh& mesh, const CellTransfer& transfer, const Po
         }
         std::sort(cells.begin(), cells.end());
         cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-      }
-      if (cells.empty())
-      {
-        return;
       }
       const Eigen::Vector3d normal = normals.row(i).transpose();
       const Eigen::Vector3d first =

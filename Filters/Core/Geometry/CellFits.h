@@ -13,10 +13,10 @@ namespace SurfaceDiffusion
 /// with the areas of the cells as weights; at the boundary, where these lie on one side, also the
 /// cells around their vertices. On planes linear functions are exact, which means of the cells
 /// around a vertex are only if their centroid is the vertex. Where the centroids lie on a line, the
-/// function is constant across it. Cells with weight 0 do not count; a vertex without cells is 0.
+/// function is constant across it.
 ///
 /// positions, normals: per vertex of `mesh`, which `transfer` was made for.
 Values FitCells(const TriangleMesh& mesh, const CellTransfer& transfer, const Points& positions,
-  const Points& normals, const Values& ofCells, const Vector& weights, const ParallelFor& parallel);
+  const Points& normals, const Values& ofCells, const ParallelFor& parallel);
 
 } // namespace SurfaceDiffusion

@@ -33,11 +33,6 @@ Flags FindSeeds(const std::vector<Index>& seeds, Index vertices)
   return fixed;
 }
 
-bool IsUnused(const Values& means, Eigen::Index region)
-{
-  return std::isnan(means(region, 0));
-}
-
 } // namespace
 
 Segmentation::Segmentation(std::shared_ptr<const Assembler> assembler, Input input,
@@ -95,7 +90,7 @@ double Segmentation::DataTerm(Index i, Index region) const
     return factor * f(i, region);
   }
   return factor *
-    (IsUnused(this->C, region) ? this->Farthest : (f.row(i) - this->C.row(region)).squaredNorm());
+    (IsUsed(this->C, region) ? (f.row(i) - this->C.row(region)).squaredNorm() : this->Farthest);
 }
 
 /// The label of the smallest data term.
@@ -235,7 +230,7 @@ bool Segmentation::UpdateMeans()
   double change = 0.0;
   for (Eigen::Index k = 0; k < regions; ++k)
   {
-    if (this->Sums(k, components) > 0.0 && !IsUnused(this->C, k))
+    if (this->Sums(k, components) > 0.0 && IsUsed(this->C, k))
     {
       this->Sums.row(k).head(components) /= this->Sums(k, components);
       change = std::max(

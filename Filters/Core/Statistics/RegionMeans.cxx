@@ -333,13 +333,18 @@ double LargestSquare(const PointData& data)
   return square > 0.0 ? square : 1.0;
 }
 
+bool IsUsed(const Values& means, Eigen::Index region)
+{
+  return !std::isnan(means(region, 0));
+}
+
 Values UsedMeans(const Values& means)
 {
   Values used(means.rows(), means.cols());
   Eigen::Index count = 0;
   for (Eigen::Index k = 0; k < means.rows(); ++k)
   {
-    if (!std::isnan(means(k, 0)))
+    if (IsUsed(means, k))
     {
       used.row(count++) = means.row(k);
     }

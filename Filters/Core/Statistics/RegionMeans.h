@@ -31,14 +31,17 @@ Values FindRegionMeans(const TriangleMesh& mesh, const PointData& data, Index re
 /// means of them; 1 if they are equal.
 double LargestSquare(const PointData& data);
 
-/// The rows of means without those of NaN.
+/// Whether the mean of a region is not NaN.
+bool IsUsed(const Values& means, Eigen::Index region);
+
+/// The rows of means of the regions that are used.
 Values UsedMeans(const Values& means);
 
 /// The contrast of the data terms r_k = |f - c_k|^2 (or of the given ones, if there is no mean):
 /// the difference between the smallest two of a vertex, on average over the known vertices of which
 /// they differ, each with the weight of its control area times its fidelity factor. 0 if there is
-/// no such vertex. Rows of NaN do not count. For data of two values it is the square of their difference, and noise hardly
-/// changes it.
+/// no such vertex. Rows of NaN do not count. For data of two values it is the square of their
+/// difference, and noise hardly changes it.
 double MeanContrast(const TriangleMesh& mesh, const PointData& data, const Values& means,
   const ParallelFor& parallel = SerialFor());
 

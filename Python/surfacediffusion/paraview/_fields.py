@@ -313,7 +313,7 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Samples 
     given = _as_data(values)
     given = np.array(given[:, :data_components(given)], dtype=np.float64, order="C")
     places, factors = _places(data), _as_numbers(weights)
-    if hidden.any():  # no value, whatever stands there
+    if hidden.any():  # hidden points have no value
         places[hidden], given[hidden] = 0.0, np.nan
         factors = None if factors is None else np.where(hidden, 0.0, factors)
     return Samples(places, given, factors, values.GetName() or ""), []

@@ -254,6 +254,19 @@ struct alignas(K * sizeof(T) % 16 == 0 ? 16 : sizeof(T)) Row
   T At[K];
 };
 
+/// Numbers, K per vertex, as rows.
+template <typename T, int K>
+__device__ Row<T, K>* Rows(T* numbers)
+{
+  return reinterpret_cast<Row<T, K>*>(numbers);
+}
+
+template <typename T, int K>
+__device__ const Row<T, K>* Rows(const T* numbers)
+{
+  return reinterpret_cast<const Row<T, K>*>(numbers);
+}
+
 /// Slices of 32 rows are stored entry by entry (SlicedMatrix.h), so that the threads of a warp read
 /// adjacent entries. Rows with more than LongestInSlice entries, as at the poles of spheres with
 /// meridians, are stored apart, and each is the work of a block.

@@ -197,18 +197,6 @@ struct HeatArguments
   Outcome* Result;
 };
 
-template <typename T, int K>
-__device__ Row<T, K>* Rows(T* numbers)
-{
-  return reinterpret_cast<Row<T, K>*>(numbers);
-}
-
-template <typename T, int K>
-__device__ const Row<T, K>* Rows(const T* numbers)
-{
-  return reinterpret_cast<const Row<T, K>*>(numbers);
-}
-
 /// B and Y of the start; `sums` are the squares of B.
 template <int K>
 __device__ void TakeStart(const HeatArguments& a, double (&sums)[K])

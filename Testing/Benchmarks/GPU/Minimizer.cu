@@ -84,18 +84,6 @@ struct MinimizerArguments
   int Sweeps;
 };
 
-template <typename T, int K>
-__device__ Row<T, K>* Rows(T* numbers)
-{
-  return reinterpret_cast<Row<T, K>*>(numbers);
-}
-
-template <typename T, int K>
-__device__ const Row<T, K>* Rows(const T* numbers)
-{
-  return reinterpret_cast<const Row<T, K>*>(numbers);
-}
-
 /// The first penalty and multipliers of zero. Result: the stiffness and the sum of mu A.
 template <int K>
 __global__ void __launch_bounds__(Threads, 4) StartMinimizer(MinimizerArguments a)

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/ScatteredValues.h"
 
+#include "Core/Foundation/DisjointSets.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -48,16 +50,7 @@ bool IsNear(const PlaceKey& a, const PlaceKey& b)
 /// Of sorted keys the first one of those that are near each other, directly or by others.
 std::vector<Index> FirstOfNear(const std::vector<PlaceKey>& keys)
 {
-  std::vector<Index> first(keys.size());
-  std::iota(first.begin(), first.end(), 0);
-  const auto rootOf = [&](Index i)
-  {
-    while (first[i] != i)
-    {
-      i = first[i] = first[first[i]];
-    }
-    return i;
-  };
+  DisjointSets sets(static_cast<Index>(keys.size()));
   // Places that are near have a vertex in common at which both have a coordinate above this one.
   constexpr double large = 0.3;
   std::vector<std::pair<std::pair<Index, double>, Index>> entries;
@@ -65,7 +58,7 @@ std::vector<Index> FirstOfNear(const std::vector<PlaceKey>& keys)
   {
     if (i > 0 && keys[i] == keys[i - 1])
     {
-      first[i] = first[i - 1];
+      sets.Join(i, i - 1);
       continue;
     }
     for (const std::pair<Index, double>& entry : keys[i])
@@ -85,15 +78,14 @@ std::vector<Index> FirstOfNear(const std::vector<PlaceKey>& keys)
     {
       if (IsNear(keys[a->second], keys[b->second]))
       {
-        const Index one = rootOf(a->second);
-        const Index other = rootOf(b->second);
-        first[std::max(one, other)] = std::min(one, other);
+        sets.Join(a->second, b->second);
       }
     }
   }
+  std::vector<Index> first(keys.size());
   for (Index i = 0; i < static_cast<Index>(keys.size()); ++i)
   {
-    first[i] = rootOf(i);
+    first[i] = sets.Find(i);
   }
   return first;
 }
