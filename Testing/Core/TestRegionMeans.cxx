@@ -180,3 +180,37 @@ TEST(RegionMeans, AreThoseOfTheValuesIfTheseAreFewerThanTheRegions)
     }
   }
 }
+
+/// The alternation moves means of regions that all but vanish past others.
+TEST(RegionMeans, AreInAscendingOrderAfterTheAlternation)
+{
+  const Domain sphere(Rotated(Icosphere(4)));
+  for (const Eigen::Index components : { 1, 3 })
+  {
+    for (std::int64_t sample = 0; sample < 6; ++sample)
+    {
+      Values f(sphere.Mesh.NumberOfVertices(), components);
+      const Values patches = Patches(sphere, 6, components, 10 * sample);
+      for (Index i = 0; i < sphere.Mesh.NumberOfVertices(); ++i)
+      {
+        f.row(sphere.Mesh.InputVertex()[i]) = patches.row(i);
+      }
+      SegmentationSettings settings;
+      settings.NumberOfRegions = 4;
+      const Solution found = Segment(sphere.Shape.Vertices, sphere.Shape.Faces, f, settings);
+      const Values& means = found.Numbers.at("Means");
+      const Values& labels = found.Arrays.at("RegionId");
+      const Values& u = found.Arrays.at("RegionProbability");
+      for (Eigen::Index k = 1; k < means.rows(); ++k)
+      {
+        EXPECT_LE(means(k - 1, 0), means(k, 0)) << sample;
+      }
+      for (Eigen::Index i = 0; i < labels.rows(); ++i)
+      {
+        const auto label = static_cast<Eigen::Index>(labels(i, 0));
+        EXPECT_EQ(u(i, label - 1), u.row(i).maxCoeff());
+        EXPECT_EQ(found.Arrays.at("Segmented")(i, 0), means(label - 1, 0));
+      }
+    }
+  }
+}

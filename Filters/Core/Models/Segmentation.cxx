@@ -162,6 +162,12 @@ StepReport Segmentation::Advance(const ProgressMonitor& progress)
     }
   }
   report.Residual = this->GapOfState = last.Gap;
+  const std::vector<Index>& seeds = this->Given.Seeds;
+  if (this->Options.UpdateMeans &&
+    std::none_of(seeds.begin(), seeds.end(), [](Index seed) { return seed > 0; }))
+  {
+    this->SortRegions();
+  }
   this->MeasureLabels(last);
   return report;
 }
@@ -248,6 +254,21 @@ bool Segmentation::UpdateMeans()
   this->C = this->Sums.leftCols(components);
   this->EnergiesOfStep.push_back(this->Energy());
   return true;
+}
+
+/// By ascending mean: the updates may have changed their order.
+void Segmentation::SortRegions()
+{
+  const std::vector<Eigen::Index> order = AscendingOrder(this->C);
+  const Values means = this->C;
+  const Values former = this->U;
+  for (Eigen::Index k = 0; k < means.rows(); ++k)
+  {
+    this->C.row(k) = means.row(order[static_cast<std::size_t>(k)]);
+    this->U.col(k) = former.col(order[static_cast<std::size_t>(k)]);
+  }
+  this->Relaxed = this->U.leftCols(this->Relaxed.cols());
+  this->EnergiesOfStep.back() = this->Energy(); // up to round-off the same
 }
 
 double Segmentation::EnergyOf(const Values& relaxed) const

@@ -25,7 +25,8 @@ namespace SurfaceDiffusion
 ///
 /// With unknown means c_k, minimisations over u and over c alternate: for fixed u the best c_k is
 /// the mean of f with the weights A_i w_i u_k,i. E never rises. It is not convex in u and c
-/// together, so that the result is a local minimum.
+/// together, so that the result is a local minimum. Without seeds the regions are then in ascending
+/// order of their means.
 ///
 /// The steady state is reached in one step. The start is the label of the smallest data term, and
 /// 1/K at missing vertices.
@@ -95,6 +96,7 @@ private:
   double ConstantEnergy() const;
   double EnergyOf(const Values& relaxed) const;
   bool UpdateMeans();
+  void SortRegions();
   void TakeState();
   TotalVariationMinimizer::Report Minimize(const ProgressMonitor& progress, bool isFirst);
   void MeasureLabels(const TotalVariationMinimizer::Report& report);

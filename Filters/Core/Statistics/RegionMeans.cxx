@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -256,27 +257,6 @@ private:
   std::vector<Index> Nearest; ///< cluster per vertex
 };
 
-void SortRows(Values& means)
-{
-  std::vector<Eigen::RowVectorXd> rows;
-  for (Eigen::Index k = 0; k < means.rows(); ++k)
-  {
-    rows.emplace_back(means.row(k));
-  }
-  std::sort(rows.begin(), rows.end(),
-    [](const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b)
-    {
-      return !std::isnan(a[0]) &&
-        (std::isnan(b[0]) ||
-          std::lexicographical_compare(
-            a.data(), a.data() + a.size(), b.data(), b.data() + b.size()));
-    });
-  for (Eigen::Index k = 0; k < means.rows(); ++k)
-  {
-    means.row(k) = rows[static_cast<std::size_t>(k)];
-  }
-}
-
 } // namespace
 
 Values FindRegionMeans(const TriangleMesh& mesh, const PointData& data, Index regions,
@@ -310,11 +290,34 @@ Values FindRegionMeans(const TriangleMesh& mesh, const PointData& data, Index re
     }
   }
   clusters.Settle(best);
-  if (!anySeed)
+  if (anySeed)
   {
-    SortRows(best);
+    return best;
   }
-  return best;
+  Values sorted(best.rows(), best.cols());
+  const std::vector<Eigen::Index> order = AscendingOrder(best);
+  for (Eigen::Index k = 0; k < best.rows(); ++k)
+  {
+    sorted.row(k) = best.row(order[static_cast<std::size_t>(k)]);
+  }
+  return sorted;
+}
+
+std::vector<Eigen::Index> AscendingOrder(const Values& means)
+{
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(means.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+    [&](Eigen::Index one, Eigen::Index other)
+    {
+      const Eigen::RowVectorXd a = means.row(one);
+      const Eigen::RowVectorXd b = means.row(other);
+      return !std::isnan(a[0]) &&
+        (std::isnan(b[0]) ||
+          std::lexicographical_compare(
+            a.data(), a.data() + a.size(), b.data(), b.data() + b.size()));
+    });
+  return order;
 }
 
 double LargestSquare(const PointData& data)
