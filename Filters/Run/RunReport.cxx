@@ -212,6 +212,7 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
     sum.DegenerateTriangles += found.DegenerateTriangles;
     sum.NonManifoldEdges += found.NonManifoldEdges;
     sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
+    sum.CoincidenceDistance = std::max(sum.CoincidenceDistance, found.CoincidenceDistance);
     sum.EdgesLeft += found.EdgesLeft;
     surfaces.Add(block->SurfaceVersion);
     masks.Add(block->MaskVersion);
@@ -228,7 +229,9 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
   addCount(sum.DegenerateTriangles, " triangles of zero area were left out");
   addCount(
     sum.NonManifoldEdges, " edges have three or more triangles, which all exchange over them");
-  addCount(sum.CoincidentBoundaryPoints, SentenceOfCoincidence(" and nothing flows between them"));
+  processes.Max(&sum.CoincidenceDistance, 1);
+  addCount(sum.CoincidentBoundaryPoints,
+    SentenceOfCoincidence(sum.CoincidenceDistance, " and nothing flows between them"));
   addCount(sum.EdgesLeft,
     " edges of the intrinsic Delaunay triangulation could not be flipped within the limit of 50 "
     "checks per side, or at triangles that are nearly flat: values can leave the bounds of the "

@@ -3,10 +3,10 @@
 #include "Run/Surface.h"
 
 #include "Core/Surface/MergePoints.h"
+#include "Core/Surface/Seams.h"
 #include "Run/Sentence.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -141,7 +141,9 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
   this->Found.EdgesLeft = this->Flipped ? this->Flipped->NumberOfEdgesLeft() : 0;
   if (!options.MergeCoincidentPoints)
   {
-    this->Found.CoincidentBoundaryPoints = this->CountCoincidentBoundaryPoints();
+    const Seams seams = FindSeams(*this->Input, this->Arrays.Points);
+    this->Found.CoincidentBoundaryPoints = seams.NumberOfVertices;
+    this->Found.CoincidenceDistance = seams.Distance;
   }
 }
 
@@ -321,30 +323,15 @@ void Surface::FindVertices()
   }
 }
 
-/// The number of boundary points that coincide with another boundary point: an unmerged seam.
-Index Surface::CountCoincidentBoundaryPoints() const
+Sentence SentenceOfCoincidence(double distance, const char* consequence)
 {
-  std::vector<std::array<double, 3>> places;
-  places.reserve(this->Working->BoundaryVertices().size());
-  for (const Index vertex : this->Working->BoundaryVertices())
+  Sentence text = " boundary points coincide with others";
+  text << consequence << " (to join them, set " << Word::Setting("MergeCoincidentPoints");
+  if (distance > 0.0)
   {
-    const auto row = this->Arrays.Points.row(this->Working->InputVertex()[vertex]);
-    places.push_back({ row[0], row[1], row[2] });
+    text << ", and " << Word::Setting("MergeTolerance") << " to " << distance;
   }
-  std::sort(places.begin(), places.end());
-  Index count = 0;
-  for (std::size_t i = 0; i < places.size(); ++i)
-  {
-    count += (i > 0 && places[i] == places[i - 1]) ||
-      (i + 1 < places.size() && places[i] == places[i + 1]);
-  }
-  return count;
-}
-
-Sentence SentenceOfCoincidence(const char* consequence)
-{
-  return Sentence(" boundary points coincide with others")
-    << consequence << " (to join them, set " << Word::Setting("MergeCoincidentPoints") << ")";
+  return text << ")";
 }
 
 Points VertexPositions(const Surface& surface)

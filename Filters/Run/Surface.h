@@ -51,12 +51,14 @@ struct SurfaceDiagnostics
   Index DegenerateTriangles = 0;
   Index UnusedPoints = 0; ///< not in any participating triangle; excluded points do not count
   Index NonManifoldEdges = 0;
-  Index CoincidentBoundaryPoints = 0; ///< counted if merging is off
+  Index CoincidentBoundaryPoints = 0; ///< Seams::NumberOfVertices; counted if merging is off
+  double CoincidenceDistance = 0.0; ///< Seams::Distance
   Index EdgesLeft = 0; ///< IntrinsicDelaunay::NumberOfEdgesLeft()
 };
 
-/// What follows the number of CoincidentBoundaryPoints, with their consequence.
-Sentence SentenceOfCoincidence(const char* consequence);
+/// What follows the number of CoincidentBoundaryPoints: how far they are apart, the consequence, and
+/// what joins them.
+Sentence SentenceOfCoincidence(double distance, const char* consequence);
 
 /// The surface that the numerics work on, and the way back to its points.
 class Surface
@@ -117,7 +119,6 @@ private:
     const SurfaceOptions& options, const ParallelFor& parallel, const ProgressMonitor& progress);
   void ReleaseTriangles();
   void FindVertices();
-  Index CountCoincidentBoundaryPoints() const;
 
   SurfaceArrays Arrays;
   std::vector<Index> Representative; ///< per point; empty if every point represents itself

@@ -5,6 +5,8 @@
 #include "Run/BlockSentences.h"
 #include "Run/Outputs.h"
 
+#include <algorithm>
+
 namespace SurfaceDiffusion
 {
 
@@ -68,12 +70,15 @@ std::vector<Warning> SurfaceRun::FindAllWarnings(
 {
   Index degenerate = 0;
   Index coincident = 0;
+  double distance = 0.0;
   Fingerprint surfaces, causes;
   BlockSentences ofRuns;
   for (std::size_t r = 0; r < runs.size(); ++r)
   {
-    degenerate += runs[r]->Domain->Diagnostics().DegenerateTriangles;
-    coincident += runs[r]->Domain->Diagnostics().CoincidentBoundaryPoints;
+    const SurfaceDiagnostics& found = runs[r]->Domain->Diagnostics();
+    degenerate += found.DegenerateTriangles;
+    coincident += found.CoincidentBoundaryPoints;
+    distance = std::max(distance, found.CoincidenceDistance);
     surfaces.Add(runs[r]->SurfaceVersion);
     for (const Warning& warning : runs[r]->FindOwnWarnings())
     {
@@ -98,7 +103,7 @@ std::vector<Warning> SurfaceRun::FindAllWarnings(
   if (coincident > 0 && ofCoincident)
   {
     Sentence text;
-    text << coincident << SentenceOfCoincidence(ofCoincident);
+    text << coincident << SentenceOfCoincidence(distance, ofCoincident);
     warnings.push_back({ text, surfaces });
   }
   return warnings;

@@ -54,6 +54,15 @@ InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optiona
   return fields;
 }
 
+/// Of an object with SurfaceDiagnostics: the number of coincident boundary points and how far apart
+/// they are.
+template <typename T>
+nb::tuple SeamsOf(const T& built)
+{
+  const SurfaceDiagnostics& found = built.Diagnostics();
+  return nb::make_tuple(found.CoincidentBoundaryPoints, found.CoincidenceDistance);
+}
+
 nb::object GetTriangles(const std::shared_ptr<InputSurface>& surface)
 {
   const Triangles& triangles = surface->GetTriangles();
@@ -202,7 +211,7 @@ NB_MODULE(_core, m)
     .def("gradient", &SurfaceOperators::Gradient)
     .def("modes", &SurfaceOperators::Modes, "diffusivity"_a.none(), "count"_a, "progress"_a.none())
     .def("number_of_vertices", &SurfaceOperators::NumberOfVertices)
-    .def("coincident_points", &SurfaceOperators::CoincidentPoints);
+    .def("seams", &SeamsOf<SurfaceOperators>);
 
   nb::class_<SurfaceFields>(m, "SurfaceFields")
     .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
@@ -215,7 +224,7 @@ NB_MODULE(_core, m)
       "progress"_a.none())
     .def("areas", &SurfaceFields::Areas)
     .def("number_of_vertices", &SurfaceFields::NumberOfVertices)
-    .def("coincident_points", &SurfaceFields::CoincidentPoints)
+    .def("seams", &SeamsOf<SurfaceFields>)
     .def("length_unit", &SurfaceFields::LengthUnit)
     .def("mean_edge_length", &SurfaceFields::MeanEdgeLength);
 
@@ -225,7 +234,7 @@ NB_MODULE(_core, m)
            double, const nb::object&>(),
       "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "slowness"_a.none(), "directions"_a.none(),
       "directions_on_faces"_a, "along"_a, "across"_a, "progress"_a.none())
-    .def("coincident_points", &SurfaceDistances::CoincidentPoints)
+    .def("seams", &SeamsOf<SurfaceDistances>)
     .def("has_point", &SurfaceDistances::HasPoint, "point"_a)
     .def("has_triangle", &SurfaceDistances::HasTriangle, "row"_a)
     .def("project", &SurfaceDistances::Project, "points"_a, "progress"_a.none())

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -92,6 +93,7 @@ nb::tuple SurfaceDistances::Project(const DoubleArray& points, const nb::object&
   const std::size_t count = points.shape(0);
   std::vector<std::int64_t> rows(count, -1);
   std::vector<double> barycentric(3 * count, 0.0);
+  std::string farness;
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
@@ -99,6 +101,9 @@ nb::tuple SurfaceDistances::Project(const DoubleArray& points, const nb::object&
       shapes.Places = Eigen::Map<const Points>(points.data(), static_cast<Eigen::Index>(count), 3);
       const SourceProjection projection(this->Input->Read(this->Mask), *this->Built);
       const ProjectedSources found = projection.Project(shapes, 0.0, this->Shapes, monitor);
+      farness = DescribeFarPoints("sources", found.MedianDistance,
+        DiagonalOf(this->Built->Points(), Reduction::Serial()))
+                  .Text();
       const TriangleMesh& mesh = this->Built->InputMesh();
       for (const SourcePiece& piece : found.Pieces)
       {
@@ -107,7 +112,7 @@ nb::tuple SurfaceDistances::Project(const DoubleArray& points, const nb::object&
         std::copy(piece.From.begin(), piece.From.end(), barycentric.begin() + 3 * k);
       }
     });
-  return nb::make_tuple(NewArray(std::move(rows)), NewArray(std::move(barycentric)));
+  return nb::make_tuple(NewArray(std::move(rows)), NewArray(std::move(barycentric)), farness.c_str());
 }
 
 /// Source k as a piece whose label is its number.

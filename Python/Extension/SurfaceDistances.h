@@ -29,8 +29,7 @@ public:
     const std::optional<FactorArray>& slowness, const std::optional<DoubleArray>& directions,
     bool directionsOnFaces, double along, double across, const nanobind::object& progress);
 
-  /// Boundary points at the place of another one.
-  Index CoincidentPoints() const { return this->Built->Diagnostics().CoincidentBoundaryPoints; }
+  const SurfaceDiagnostics& Diagnostics() const { return this->Built->Diagnostics(); }
 
   /// Whether a triangle that takes part uses the point, or that triangle of the input takes part.
   bool HasPoint(std::int64_t point) const
@@ -40,7 +39,8 @@ public:
   bool HasTriangle(std::int64_t row) const;
 
   /// The triangles (k) and barycentric coordinates (k x 3) of the nearest places of the surface to
-  /// points (k x 3); -1 for those nearest to triangles that take no part.
+  /// points (k x 3); -1 for those nearest to triangles that take no part. Then a sentence if half of
+  /// the points are far away.
   nanobind::tuple Project(const DoubleArray& points, const nanobind::object& progress) const;
 
   /// The times (n) from sources with start times, and the row of the source that each point is

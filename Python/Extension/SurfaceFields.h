@@ -38,8 +38,7 @@ public:
     const nanobind::object& progress) const;
 
   Index NumberOfVertices() const { return this->Built->Mesh().NumberOfVertices(); }
-  /// Boundary points at the place of another one.
-  Index CoincidentPoints() const { return this->Built->Diagnostics().CoincidentBoundaryPoints; }
+  const SurfaceDiagnostics& Diagnostics() const { return this->Built->Diagnostics(); }
   /// The control areas (n) in LengthUnit()^2; 0 at points that take no part.
   nanobind::object Areas() const;
   double LengthUnit() const { return this->Built->Mesh().LengthUnit(); }

@@ -31,8 +31,7 @@ public:
   nanobind::tuple Modes(const std::optional<DoubleArray>& diffusivity, Index count,
     const nanobind::object& progress) const;
   Index NumberOfVertices() const { return this->Built->Mesh().NumberOfVertices(); }
-  /// Boundary points at the place of another one.
-  Index CoincidentPoints() const { return this->Built->Diagnostics().CoincidentBoundaryPoints; }
+  const SurfaceDiagnostics& Diagnostics() const { return this->Built->Diagnostics(); }
 
 private:
   CornerWeights Coefficients(const std::optional<DoubleArray>& diffusivity) const;

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, take_along
-from ._run import Progress, ProgressReporter, warn_of_seams
+from ._run import Progress, ProgressReporter, warn, warn_of_seams
 from ._settings import check_positive, shorten
 from ._surface import (
     Surface, SurfaceLike, as_directions, as_flags, as_numbers, as_surface, find_mask, find_place,
@@ -286,7 +286,9 @@ def _prepare(
     if barycentric is not None and surface is not given:  # other triangles, in the same planes
         places = np.einsum("ki,kij->kj", barycentric, given.points[given.triangles[rows]])
     if places is not None:
-        rows, flat = fronts.project(places, None)
+        rows, flat, farness = fronts.project(places, None)
+        if farness:
+            warn([farness])
         barycentric = flat.reshape(-1, 3)
         if (rows < 0).any():
             raise ValueError(f"sources has {places[rows < 0][0].tolist()}, which is nearest to a face "

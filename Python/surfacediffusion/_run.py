@@ -41,10 +41,14 @@ def warn(sentences: list[str], category: type[Warning] = SurfaceDiffusionWarning
 
 def warn_of_seams(built: Any, consequence: str) -> None:
     """A warning if points of the boundary coincide: a surface whose triangles do not share them."""
-    count = built.coincident_points()
+    count, distance = built.seams()
+    if distance:
+        how = f"points within {distance:g} of one another once, as scipy.spatial.cKDTree finds them"
+    else:
+        how = "points at one place once, as numpy.unique(points, axis=0, return_inverse=True) does"
     if count:
         warn([f"{count} boundary points coincide with others and {consequence} (to join them, number "
-              "points at one place once, as numpy.unique(points, axis=0, return_inverse=True) does)"])
+              f"{how})"])
 
 
 def take_old_switch(

@@ -7,6 +7,7 @@ import fcntl
 import json
 import os
 import pty
+import re
 import struct
 import subprocess
 import sys
@@ -712,6 +713,24 @@ class OtherCommands(CommandTest):
             found = read_data("out.vtp").parts[0].values
             np.testing.assert_allclose(found, read_data("expected.vtp").parts[0].values[FACES.reshape(-1)],
                                        atol=1e-5)
+
+    @unittest.skipUnless(HAS_VTK, "needs vtk")
+    def test_vertices_that_differ_by_round_off_are_joined_on_request(self):
+        corners = POINTS[FACES].reshape(-1, 3)
+        corners = corners + 1e-5 * np.random.default_rng(2).random(corners.shape)
+        samples.write_vtk("soup.vtp", corners, np.arange(FACES.size).reshape(-1, 3),
+                          {"f": NOISE[FACES].reshape(-1)})
+        samples.write_vtk("whole.vtp")
+        self.succeed("smooth whole.vtp whole.vtp 5 expected.vtp")
+        code, _, error = run("smooth", "soup.vtp", "soup.vtp", 5, "out.vtp")
+        self.assertEqual(code, 0)
+        advice = re.search(r"\(to join them, set --merge, and --merge-tolerance to (\S+)\)", error)
+        self.assertIsNotNone(advice, error)
+        self.succeed(f"smooth soup.vtp soup.vtp 5 out.vtp --merge-tolerance {advice[1]}")
+        np.testing.assert_allclose(read_data("out.vtp").parts[0].values,
+                                   read_data("expected.vtp").parts[0].values[FACES.reshape(-1)], atol=1e-3)
+        _, _, error = run("distance", "soup.vtp", "out.vtp", "--from", 0)
+        self.assertIn("(ParaView's filter Clean joins them)", error)
 
 
 class Reports(CommandTest):

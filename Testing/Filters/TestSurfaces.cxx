@@ -259,6 +259,53 @@ TEST(Surfaces, MergedPointsAreOne)
   compare(1e-3);
 }
 
+TEST(Surfaces, WhoseSeamsCoincideUpToRoundOffAreReportedWithTheToleranceThatJoinsThem)
+{
+  constexpr int n = 24;
+  auto torus = Grid(n + 1, n + 1);
+  const double full = 8.0 * std::atan(1.0);
+  for (vtkIdType i = 0; i < torus->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    torus->GetPoint(i, p);
+    const double u = full * p[0] / n;
+    const double v = full * p[1] / n;
+    const double radius = 3.0 + std::cos(v);
+    torus->GetPoints()->SetPoint(i, radius * std::cos(u), radius * std::sin(u), std::sin(v));
+  }
+  AddPlaceData(torus);
+  auto filter = MakeFilter(torus);
+  filter->SetTimeStep(10.0);
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  const std::string& text = messages.Warnings[0];
+  EXPECT_NE(text.find("96 boundary points coincide with others"), std::string::npos) << text;
+  const std::string words = "set MergeCoincidentPoints, and MergeTolerance to ";
+  const std::size_t place = text.find(words);
+  ASSERT_NE(place, std::string::npos) << text;
+  const double tolerance = std::stod(text.substr(place + words.size()));
+  EXPECT_LT(tolerance, 1e-13);
+  const auto largestJump = [&]
+  {
+    double jump = 0.0;
+    for (vtkIdType j = 0; j <= n; ++j)
+    {
+      jump = std::max(jump,
+        std::abs(Result(filter)->GetComponent(j * (n + 1), 0) -
+          Result(filter)->GetComponent(j * (n + 1) + n, 0)));
+    }
+    return jump;
+  };
+  EXPECT_GT(largestJump(), 1e-4);
+  messages.Warnings.clear();
+  filter->MergeCoincidentPointsOn();
+  filter->SetMergeTolerance(tolerance);
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty()) << messages.Warnings[0];
+  EXPECT_EQ(largestJump(), 0.0);
+}
+
 TEST(Surfaces, MergedPointsWithDifferentDataTakeTheirMeanAndKeepTheSum)
 {
   auto sheets = TwoSheets();

@@ -7,6 +7,7 @@ import importlib
 import importlib.util
 import sys
 import unittest
+import warnings
 
 import numpy as np
 
@@ -159,6 +160,17 @@ class Distance(unittest.TestCase):
         self.assertTrue(np.isfinite(found.distance[:42]).all())
         self.assertTrue(np.isinf(found.distance[42:]).all())
         self.assertTrue((found.source[42:] == -1).all())
+
+    def test_sources_in_another_unit_are_worth_a_warning(self):
+        surface = sd.sphere(2)
+        places = 1.01 * surface.points[[3, 80, 120]]
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            near = sd.distance(surface, places)
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
+                                   "^half of the sources are .* or more from the surface, which is .* large"):
+            far = sd.distance(surface, 1000 * places)
+        np.testing.assert_allclose(far, near, atol=1e-2)
 
     def test_bad_input_names_what_is_allowed(self):
         surface = sd.sphere(1)

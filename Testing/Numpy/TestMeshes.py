@@ -98,6 +98,28 @@ class Seams(unittest.TestCase):
                 warnings.simplefilter("error")
                 call(whole)
 
+    def test_seams_up_to_round_off_are_named_with_their_width(self):
+        u, v = np.meshgrid(np.linspace(0, 2 * np.pi, 25), np.linspace(0, 2 * np.pi, 25), indexing="ij")
+        radius = 3 + np.cos(v)
+        points = np.stack([radius * np.cos(u), radius * np.sin(u), np.sin(v)], axis=-1).reshape(-1, 3)
+        corner = (np.arange(24)[:, None] * 25 + np.arange(24)).ravel()
+        faces = np.vstack([np.stack([corner, corner + 25, corner + 26], 1),
+                           np.stack([corner, corner + 26, corner + 1], 1)])
+        torus = Surface(points, faces)
+        z = points[:, 2]
+        for call in (lambda s: sd.eigenmodes(s, 2), lambda s: sd.distance(s, [0]),
+                     lambda s: sd.random_field(s, 1, fwhm=0.5)):
+            with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
+                                       r"^96 boundary points coincide .* within \de-1\d of one another once"):
+                call(torus)
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, r"and merge_tolerance to \de-1\d\)") as caught:
+            apart = heat(torus, z, fwhm=2)
+        tolerance = float(str(caught.warning).split(" to ")[-1].rstrip(")"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            joined = heat(torus, z, fwhm=2, merge_coincident_points=True, merge_tolerance=tolerance)
+        np.testing.assert_array_equal(joined.reshape(25, 25)[:, 0], joined.reshape(25, 25)[:, -1])
+        self.assertGreater(np.abs(apart - joined).max(), 1e-3)
 
     def test_ends_of_edges_without_a_length_are_one_point(self):
         whole = sd.sphere(3)

@@ -260,6 +260,10 @@ bool Segmentation::UpdateMeans()
 void Segmentation::SortRegions()
 {
   const std::vector<Eigen::Index> order = AscendingOrder(this->C);
+  if (std::is_sorted(order.begin(), order.end()))
+  {
+    return;
+  }
   const Values means = this->C;
   const Values former = this->U;
   for (Eigen::Index k = 0; k < means.rows(); ++k)

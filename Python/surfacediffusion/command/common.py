@@ -156,6 +156,16 @@ def merge(parser):
     parser.add_argument("--merge", action="store_true",
                         help="vertices at the same place are one vertex of the surface, as files "
                              "with split normals or texture seams need")
+    positive(parser, "--merge-tolerance", "DISTANCE",
+             "as --merge, also of vertices within DISTANCE of one another, as seams need whose sides "
+             "differ by round-off")
+
+
+def merging(arguments):
+    """The settings of --merge and --merge-tolerance, where a command has them."""
+    tolerance = getattr(arguments, "merge_tolerance", None)
+    return {"merge_coincident_points": getattr(arguments, "merge", False) or tolerance is not None,
+            "merge_tolerance": tolerance or 0.0}
 
 
 # ---- numbers -------------------------------------------------------------------------------------

@@ -83,7 +83,7 @@ def denoise_mesh(arguments, report):
     check_output_name(arguments.output, surface.kind)
     options = {"noise_level": arguments.noise or 0.0,
                "surface_type": {"cad": "CAD"}.get(arguments.type, arguments.type.capitalize()),
-               "merge_coincident_points": arguments.merge}
+               **common.merging(arguments)}
     if arguments.fixed is not None:
         with report.timed("read"):
             options["fixed"] = dict(inputs.read_marks(arguments.fixed, {"": surface}))[id(surface)]

@@ -84,7 +84,7 @@ def distance(arguments, report):
 def _nearest_vertex(points, place, report):
     gaps = np.linalg.norm(points - place, axis=1)
     size = np.linalg.norm(np.ptp(points, axis=0))
-    if gaps.min() > 0.1 * size:
+    if gaps.min() > 0.25 * size:
         report.warn(f"--from {','.join(f'{x:g}' for x in place)} is {gaps.min():.4g} from the surface, which is "
                     f"{size:.4g} large (its unit or origin may be another)")
     return int(np.argmin(gaps))

@@ -14,6 +14,7 @@ from ..files import Data, FileError, Part
 from ..files.cifti import open_cifti
 from ..files.content import check_output_folder, check_output_name, read_content
 from . import inputs
+from .common import merging
 from .inputs import ArgumentProblem
 from .report import number
 
@@ -125,7 +126,7 @@ def _surface_place(entry, part, surface, areas, width, arguments):
         mask = excluded if excluded.any() else None
         return heat(solver, full, mask=mask, mask_mode="Exclude", fwhm=width,
                     time_integrator="Exponential", number_of_time_steps=arguments.steps,
-                    merge_coincident_points=getattr(arguments, "merge", False))[entry.vertices]
+                    **merging(arguments))[entry.vertices]
 
     def measure(inside):
         excluded = np.ones(solver.n_points, dtype=bool)

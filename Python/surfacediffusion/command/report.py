@@ -24,6 +24,7 @@ _OPTIONS = {
     "maximum_distance": ("within", "--within"),
     "maximum_number_of_triangles": ("maximum_triangles", "--maximum-triangles"),
     "merge_coincident_points": ("merge", "--merge"),
+    "merge_tolerance": ("merge_tolerance", "--merge-tolerance"),
     "noise_level": ("noise", "--noise"),
     "number_of_regions": ("regions", "--regions"),
     "number_of_time_steps": ("steps", "--steps"),
@@ -33,14 +34,16 @@ _OPTIONS = {
 
 def in_options(text, arguments):
     """A sentence of the package in the words of the command line: the options that it has."""
-    text = re.sub(r"to join them, number points.* does\)", "ParaView's filter Clean joins them)", text)
+    text = re.sub(r"to join them, number points.* (does|finds them)\)",
+                  "ParaView's filter Clean joins them)", text)
     # A number that is given turns its choice from the data off.
     text = re.sub(r"turn off automatic_\w+ and |, with automatic_\w+ off", "", text)
     text = text.replace("turn automatic_threshold on", "give no edge_threshold")
     for setting, (destination, option) in _OPTIONS.items():
         if hasattr(arguments, destination):
             text = re.sub(rf"(?<![\w./-]){setting}(?![\w./-])", option, text)  # names of files stay
-    text = text.replace("to join them, set merge_coincident_points", "ParaView's filter Clean joins them")
+    text = re.sub(r"to join them, set merge_coincident_points(, and merge_tolerance[^)]*)?",
+                  "ParaView's filter Clean joins them", text)
     return re.sub(r"(^|; )(fwhm|kinetics|method|range|speed) is",
                   lambda found: found[1] + ("--" + found[2] if hasattr(arguments, found[2])
                                             else found[2].upper()) + " is", text)

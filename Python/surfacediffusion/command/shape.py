@@ -64,8 +64,8 @@ def curvature(arguments, report):
     target = new_data(surface, arguments.output,
                       ["mean", "gaussian", "k1", "k2", "shape_index", "curvedness"])
     with report.working("Curvature") as progress:
-        found = measure(solid(surface), fwhm=arguments.fwhm, merge_coincident_points=arguments.merge,
-                        progress=progress)
+        found = measure(solid(surface), fwhm=arguments.fwhm, progress=progress,
+                        **common.merging(arguments))
     report.facts.update(fwhm=arguments.fwhm, mean_edge_length=number(found.mean_edge_length),
                         mean_curvature=number(found.mean.mean()))
     write_new(arguments, report, target, np.column_stack(

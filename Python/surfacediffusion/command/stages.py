@@ -12,7 +12,7 @@ from .._run import part_of
 from .._surface import Surface
 from ..files import FileError, new_data, read_data, read_surface, write_atomically
 from ..files.content import check_output_folder, kind_of_name
-from . import inputs
+from . import common, inputs
 from .inputs import choose_columns, make_patches, read_surfaces
 from .report import counted, number
 
@@ -44,7 +44,7 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
         target, kept = _target(data, columns, patches[0].surface, arguments.output)
     if data.extra:
         report.warn(f"{data.path}: {data.extra}")
-    options = {"merge_coincident_points": True} if getattr(arguments, "merge", False) else {}
+    options = given(**common.merging(arguments))
     results = []
     total = sum(len(columns) for _ in patches)
     done = 0
