@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compare the skipped tests of a run of ctest with those that may be skipped. Arguments: the file that
-ctest --output-junit wrote, and may_be_skipped.txt. Skipped tests that the list does not have are
-printed, and the exit code is 1."""
+"""Compare the skipped tests of a run of ctest with those that may be skipped, and all with those that it
+must have. Arguments: the file that ctest --output-junit wrote, may_be_skipped.txt, and must_run.txt.
+Skipped tests that the first list does not have, and entries of the second that no test has, are printed,
+and the exit code is 1."""
 import re
 import sys
 from pathlib import Path
@@ -29,25 +30,35 @@ def reasons_of(case):
     return parts
 
 
+def lines_of(path):
+    return [line for line in Path(path).read_text(encoding="utf-8").splitlines()
+            if line.strip() and not line.startswith("#")]
+
+
 def rules_of(path):
     """Pairs of regular expressions: of the test's whole name, and of a part of the reason."""
-    for line in Path(path).read_text(encoding="utf-8").splitlines():
-        if line.strip() and not line.startswith("#"):
-            name, reason = line.split(": ", 1)
-            yield re.compile(name), re.compile(reason)
+    for line in lines_of(path):
+        name, reason = line.split(": ", 1)
+        yield re.compile(name), re.compile(reason)
 
 
-def main(results, allowed):
+def main(results, allowed, needed):
     rules = list(rules_of(allowed))
-    unexpected = [(case.get("name"), reason)
-                  for case in ElementTree.parse(results).iter("testcase") for reason in reasons_of(case)
+    cases = list(ElementTree.parse(results).iter("testcase"))
+    unexpected = [(case.get("name"), reason) for case in cases for reason in reasons_of(case)
                   if not any(name.fullmatch(case.get("name")) and part.search(reason)
                              for name, part in rules)]
+    missing = [name for name in lines_of(needed)
+               if not any(re.fullmatch(name, case.get("name")) for case in cases)]
     for name, reason in unexpected:
         print(f"skipped: {name}: {reason}")
     if unexpected:
         print(f"These skips are not in {allowed}, so the run has failed.")
-    return 1 if unexpected else 0
+    for name in missing:
+        print(f"not run: {name}")
+    if missing:
+        print(f"No test has these names of {needed}, so the run has failed.")
+    return 1 if unexpected or missing else 0
 
 
 if __name__ == "__main__":

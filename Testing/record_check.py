@@ -34,6 +34,14 @@ def result_of(log):
     return f"{runs[-1]} runs without a finding"
 
 
+def stale_checks(names, page, changelog):
+    """The checks that have not passed since the last release of the changelog."""
+    releases = re.findall(r"^## (\d+)\.(\d+)\.(\d+)", changelog, re.MULTILINE)  # the newest is first
+    last = tuple(map(int, releases[0])) if releases else (0, 0, 0)
+    passed = {row[0]: tuple(map(int, row[4].split("."))) for row in ROW.findall(page)}
+    return [name for name in names if passed.get(name, (-1,)) < last]
+
+
 def main(check, log):
     def git(*arguments):
         return subprocess.run(["git", *arguments], cwd=HERE, check=True, capture_output=True,

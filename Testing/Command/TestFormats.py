@@ -398,6 +398,21 @@ class Normals(FormatTest):
             self.assertEqual(data.names, ["nx", "ny", "nz"])
             np.testing.assert_allclose(data.parts[0].values, self.expected(path)[0], atol=1e-6)
 
+    def test_normals_of_gifti_are_computed_again(self):
+        samples.write_surface("a.surf.gii", self.noisy, FACES)
+        image = nib.load("a.surf.gii")
+        unit = np.tile(np.float32([0.6, 0, 0.8]), (N, 1))
+        for vectors in (unit, 3 * unit):  # normals, and vectors that are none
+            image.add_gifti_data_array(gifti.GiftiDataArray(vectors, "NIFTI_INTENT_VECTOR", "NIFTI_TYPE_FLOAT32"))
+        nib.save(image, "a.surf.gii")
+        for path in self.run_both("a.surf.gii", "computed again"):
+            normals, others = nib.load(path).get_arrays_from_intent("NIFTI_INTENT_VECTOR")
+            np.testing.assert_allclose(normals.data, self.expected(path)[0], atol=1e-6)
+            np.testing.assert_array_equal(others.data, 3 * unit)
+        samples.write_surface("b.surf.gii", self.noisy, FACES)
+        for _ in self.run_both("b.surf.gii", ""):
+            pass
+
     def test_normals_of_off_are_computed_again(self):
         lines = ["NOFF", f"{N} {len(FACES)} 0"]
         lines += [f"{x} {y} {z} 1 0 0 # {i}" for i, (x, y, z) in enumerate(self.noisy.tolist())]

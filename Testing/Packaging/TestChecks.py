@@ -12,7 +12,7 @@ from pathlib import Path
 SOURCE = Path(sys.argv.pop())
 TESTING = SOURCE / "Testing"
 sys.path.insert(0, str(TESTING))
-from record_check import ROW, result_of  # noqa: E402
+from record_check import HEAD, ROW, result_of, stale_checks  # noqa: E402
 
 
 def case(name, output, skipped=""):
@@ -21,13 +21,15 @@ def case(name, output, skipped=""):
 
 class Skips(unittest.TestCase):
 
-    def check(self, cases, rules=""):
+    def check(self, cases, rules="", needed=""):
         """The exit code and the output of check_skips.py."""
         with tempfile.TemporaryDirectory() as folder:
             results, allowed = Path(folder, "tests.xml"), Path(folder, "allowed.txt")
             results.write_text(f"<testsuite>{''.join(cases)}</testsuite>")
             allowed.write_text("# reasons\n\n" + rules)
-            run = subprocess.run([sys.executable, TESTING / "check_skips.py", results, allowed],
+            must_run = Path(folder, "needed.txt")
+            must_run.write_text("# names\n" + needed)
+            run = subprocess.run([sys.executable, TESTING / "check_skips.py", results, allowed, must_run],
                                  capture_output=True, text=True)
         return run.returncode, run.stdout
 
@@ -45,6 +47,12 @@ class Skips(unittest.TestCase):
         self.assertEqual(text.splitlines()[:4], [
             "skipped: ByCode: skipped: no tool", "skipped: ByGoogleTest: A.b: no meshes",
             "skipped: ByUnittest: no VTK", "skipped: WithoutReason: no reason in the output"])
+
+    def test_tests_that_were_not_made_are_found(self):
+        cases = [case("Plugin.Toolbar", "OK"), case("Parallel.Program.4", "OK")]
+        self.assertEqual(self.check(cases, needed="Plugin\\.Toolbar\nParallel\\..*\n"), (0, ""))
+        code, text = self.check(cases, needed="Plugin\\.Tool\nParallel\\..*\n")
+        self.assertEqual((code, text.splitlines()[0]), (1, "not run: Plugin\\.Tool"))
 
     def test_only_the_listed_reason_is_allowed(self):
         cases = [case("Command.A", "test_a (T) ... skipped 'root may write'\n\nOK (skipped=1)")]
@@ -81,16 +89,20 @@ class TestData(unittest.TestCase):
 class Checks(unittest.TestCase):
 
     def test_each_check_has_passed_since_the_last_release(self):
-        rows = {row[0]: row for row in ROW.findall((TESTING / "CHECKS.md").read_text())}
+        page = (TESTING / "CHECKS.md").read_text()
         script = (TESTING / "run-checks.sh").read_text()
         names = re.search(r"\|\| set -- (.*)", script).group(1).split()
-        self.assertLessEqual(set(rows), set(names))
-        releases = re.findall(r"^## (\d+)\.(\d+)\.(\d+)", (SOURCE / "CHANGELOG.md").read_text(), re.MULTILINE)
-        if releases:  # the newest is first
-            last = tuple(map(int, releases[0]))
-            for name in names:
-                self.assertIn(name, rows)
-                self.assertGreaterEqual(tuple(map(int, rows[name][4].split("."))), last, name)
+        self.assertLessEqual({row[0] for row in ROW.findall(page)}, set(names))
+        self.assertEqual(stale_checks(names, page, (SOURCE / "CHANGELOG.md").read_text()), [])
+
+    def test_a_check_without_a_row_or_of_a_former_version_is_stale(self):
+        page = HEAD + "".join(f"| `{name}` | 1 tests pass | 2026-01-02 | {'a' * 10} | {version} |\n"
+                              for name, version in (("old", "0.9.12"), ("new", "1.2.0")))
+        names = ["new", "none", "old"]
+        for changelog, stale in (("# Changelog\n\n## 1.0.0\n\n## 0.9.0\n", ["none", "old"]),
+                                 ("## Unreleased\n\n## 1.10.0\n", names),
+                                 ("## Unreleased\n", ["none"])):
+            self.assertEqual(stale_checks(names, page, changelog), stale)
 
     def test_the_counts_of_ctest_of_the_fuzzer_and_of_the_site_are_read(self):
         self.assertEqual(result_of("100% tests passed, 0 tests failed out of 12\n"), "12 tests pass")

@@ -133,13 +133,19 @@ def code_name(intent):
 
 
 def _write_gifti(surface, points):
-    array = surface.image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")[0]
-    before = array.data
-    array.data = points.astype(before.dtype)
+    changes = [(surface.image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")[0], points)]
+    for array in surface.image.get_arrays_from_intent("NIFTI_INTENT_VECTOR"):
+        lengths = np.linalg.norm(array.data, axis=-1)
+        if array.data.shape == points.shape and np.allclose(lengths, 1, atol=1e-3):  # other vectors stay
+            changes.append((array, _normals(points, surface.faces)[0]))
+    given = [array.data for array, _ in changes]
     try:
-        return surface.image.to_bytes(), ""
+        for array, values in changes:
+            array.data = values.astype(array.data.dtype)
+        return surface.image.to_bytes(), "computed again" if len(changes) > 1 else ""
     finally:
-        array.data = before
+        for (array, _), data in zip(changes, given):
+            array.data = data
 
 
 # ---- FreeSurfer ----------------------------------------------------------------------------------
