@@ -29,6 +29,7 @@ except ImportError as problem:
     sys.exit(77)
 
 import numpy as np
+from nibabel import freesurfer
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -40,6 +41,7 @@ from surfacediffusion.files.export import export
 FOLDER = Path(sys.argv.pop()).resolve()
 sys.path.insert(0, str(FOLDER))
 from filters import FILTERS  # noqa: E402
+from meshes import size_of  # noqa: E402
 
 
 def write_off(path, surface, centre=(0, 0, 0)):
@@ -210,6 +212,23 @@ class TestApplication(unittest.TestCase):
         self.assertIn("thickness.npy", self.text(".bar"))
         self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, ".bar")), 2)
 
+    def test_brains_have_millimetres_and_come_back_in_their_format(self):
+        name = str(self.folder / "lh.white")
+        freesurfer.write_geometry(name, self.surface.points, self.surface.triangles)
+        freesurfer.write_morph_data(str(self.folder / "lh.thickness"), self.values.astype(np.float32))
+        self.open()
+        self.drop("lh.white", "lh.thickness")
+        wait_for(lambda: "lh.white: 2,562 points" in self.text("#mesh"), "the mesh")
+        self.choose("array", "lh.thickness")
+        wait_for(lambda: "lh.thickness, mm" in self.text(".bar"), "the unit")
+        wait_for(lambda: all(surface_part(half) > 0.1 for half in self.halves()), "a framed brain")
+        wait_for(lambda: self.one("#download").is_enabled(), "the result")
+        found = freesurfer.read_morph_data(str(self.download()))
+        width = float(self.text("#slider-width div").rsplit(": ", 1)[1].split()[0])
+        self.assertIn("mm", self.text("#slider-width div"))
+        smooth = sd.heat(self.surface, self.values.astype(np.float32), fwhm=width)
+        np.testing.assert_allclose(found, smooth, atol=1e-4)
+
     def test_choices_are_menus_and_switches(self):
         self.open()
         self.choose("filter", FILTERS["tensor_diffusion"].title)
@@ -331,6 +350,11 @@ class TestApplication(unittest.TestCase):
                 self.clear_files()
         self.drop_ball()
         self.assertEqual(self.message(), "")
+
+    def test_a_compressed_file_is_undone_no_further_than_is_allowed(self):
+        zeros = gzip.compress(b"\0" * (200 << 20))
+        self.assertLess(size_of(zeros, 1 << 20), 4 << 20)
+        self.assertEqual(size_of(gzip.compress(b"\0" * 5000), 1 << 20), 5000)
 
     def test_two_people_do_not_see_each_other(self):
         self.open()
