@@ -43,12 +43,12 @@ const std::vector<const char*> WordsOfPrecision = { "Single", "Double", "Input" 
 constexpr int DirectionIndex = 2;
 
 /// Where there is no direction, diffusion is isotropic.
-void ReplaceAbsentDirections(vtkPolyData* block, InputFields& fields)
+void ReplaceAbsentDirections(InputFields& fields)
 {
   if (std::any_of(fields.Absent.begin(), fields.Absent.end(),
         [](const AbsentArray& array) { return array.Index == DirectionIndex; }))
   {
-    fields.NoDirection = NewArray<vtkDoubleArray>("", 3, block->GetNumberOfPoints());
+    fields.NoDirection = NewArray<vtkDoubleArray>("", 3, fields.Surface->GetNumberOfPoints());
     fields.NoDirection->Fill(0.0);
     fields.Direction.Values = fields.NoDirection;
   }
@@ -176,7 +176,7 @@ void vtkSurfaceModelAlgorithm::ProcessSurfaces(
       [&]
       {
         state.Run.Update(
-          this->MakeInputs(surfaces, fields), state.Settings, processes, progress.Part(0.0, 0.25));
+          this->MakeInputs(fields), state.Settings, processes, progress.Part(0.0, 0.25));
         progress.Report(0.25);
         double found = 0.25;
         state.Step = state.Settings->DescribeModel().NumberOfSteps;
@@ -303,11 +303,12 @@ void vtkSurfaceModelAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bl
   std::vector<SurfaceBlock>& surfaces, std::vector<InputFields>& fields, Problems& problems)
 {
   BlockSentences problemsOfData, problemsOfBlocks;
-  std::vector<std::string> names;
   std::vector<Problems> found;
   for (const SurfaceBlock& block : blocks)
   {
     InputFields arrays;
+    arrays.Surface = block.Input;
+    arrays.Name = block.Name;
     Problems here;
     const bool takesPart = !this->GetProcesses().IsSerial() &&
       block.Input->GetNumberOfPoints() == 0; // in collective calls
@@ -322,7 +323,6 @@ void vtkSurfaceModelAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bl
       surfaces.push_back(block);
       fields.push_back(arrays);
       found.push_back(here);
-      names.push_back(block.Name);
       continue;
     }
     for (const AbsentArray& array : arrays.Absent)
@@ -344,35 +344,30 @@ void vtkSurfaceModelAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bl
     warning << " (without data, a block passes through)";
   }
   const std::size_t before = problems.size();
-  SettleAbsence(fields, names, problems, warnings);
+  SettleAbsence(fields, problems, warnings);
   const bool allAreFound = problems.size() == before;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    ReplaceAbsentDirections(surfaces[b].Input, fields[b]);
+    ReplaceAbsentDirections(fields[b]);
     // An array that is not found would be reported as not set, too.
     if (found[b].empty() && allAreFound && surfaces[b].Input->GetNumberOfPoints() > 0)
     {
       const FieldSummary summary = fields[b].Summarize();
       this->State->Settings->Check(&summary, found[b]);
     }
-    problemsOfBlocks.Add(found[b], names[b]);
+    problemsOfBlocks.Add(found[b], fields[b].Name);
   }
   problemsOfBlocks.AppendTo(problems, surfaces.size());
 }
 
 std::vector<BlockInput> vtkSurfaceModelAlgorithm::MakeInputs(
-  const std::vector<SurfaceBlock>& surfaces, const std::vector<InputFields>& fields)
+  const std::vector<InputFields>& surfaces)
 {
-  std::vector<SurfaceInput> inputs;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
-  }
   const bool excludes = this->GetMaskMode() == MASK_MODE_EXCLUDE;
   return !this->GetProcesses().IsSerial()
-    ? this->State->Inputs.MakeOfPieces(
-        inputs, excludes, this->SeamTolerance, this->GetController(), this->Private->AbortRequested)
-    : this->State->Inputs.Make(inputs, excludes);
+    ? this->State->Inputs.MakeOfPieces(surfaces, excludes, this->SeamTolerance,
+        this->GetController(), this->Private->AbortRequested)
+    : this->State->Inputs.Make(surfaces, excludes);
 }
 
 void vtkSurfaceModelAlgorithm::WriteResult(

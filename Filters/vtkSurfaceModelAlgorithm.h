@@ -238,8 +238,8 @@ private:
   void WriteFidelityWeights(const std::vector<SurfaceBlock>& surfaces);
   void WriteResults(const std::vector<SurfaceBlock>& surfaces,
     const std::vector<SurfaceDiffusion::InputFields>& fields);
-  std::vector<SurfaceDiffusion::BlockInput> MakeInputs(const std::vector<SurfaceBlock>& surfaces,
-    const std::vector<SurfaceDiffusion::InputFields>& fields);
+  std::vector<SurfaceDiffusion::BlockInput> MakeInputs(
+    const std::vector<SurfaceDiffusion::InputFields>& surfaces);
 };
 
 #endif

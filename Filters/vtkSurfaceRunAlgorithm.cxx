@@ -57,12 +57,7 @@ void vtkSurfaceRunAlgorithm::ProcessSurfaces(
     return;
   }
 
-  std::vector<SurfaceInput> inputs;
-  for (std::size_t b = 0; b < surfaces.size(); ++b)
-  {
-    inputs.push_back({ surfaces[b].Input, &fields[b], surfaces[b].Name });
-  }
-  state.Runs.Update(inputs, *state.Settings, progress);
+  state.Runs.Update(fields, *state.Settings, progress);
   this->BeginWriting();
   this->PrepareOutputs(surfaces, state.Runs);
   std::vector<std::string> replaced;
@@ -88,15 +83,15 @@ void vtkSurfaceRunAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bloc
   std::vector<SurfaceBlock>& surfaces, std::vector<InputFields>& fields, Problems& problems)
 {
   std::vector<InputFields> ofBlocks;
-  std::vector<std::string> names;
   BlockSentences problemsOfArrays;
   for (const SurfaceBlock& block : blocks)
   {
     InputFields arrays;
+    arrays.Surface = block.Input;
+    arrays.Name = block.Name;
     Problems here;
     const bool takesPart = this->FindFields(block.Input, arrays, here);
     problemsOfArrays.Add(here, block.Name);
-    names.push_back(block.Name);
     ofBlocks.push_back(arrays);
     if (takesPart)
     {
@@ -107,7 +102,7 @@ void vtkSurfaceRunAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bloc
   problemsOfArrays.AppendTo(problems, blocks.size());
   const std::size_t before = problems.size();
   this->State->InputWarnings.clear();
-  SettleAbsence(ofBlocks, names, problems, this->State->InputWarnings);
+  SettleAbsence(ofBlocks, problems, this->State->InputWarnings);
   const bool allAreFound = problems.size() == before;
   BlockSentences problemsOfSettings;
   // An array that is not found would be reported as not set, too.

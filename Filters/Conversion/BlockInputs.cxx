@@ -14,18 +14,18 @@ namespace SurfaceDiffusion
 {
 
 std::vector<BlockInput> BlockInputs::Describe(
-  const std::vector<SurfaceInput>& surfaces, bool excludeMasked)
+  const std::vector<InputFields>& surfaces, bool excludeMasked)
 {
   this->Cells.resize(surfaces.size());
   std::vector<BlockInput> inputs(surfaces.size());
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    vtkPolyData* const data = surfaces[b].Data;
-    const InputFields& arrays = *surfaces[b].Fields;
+    const InputFields& arrays = surfaces[b];
+    vtkPolyData* const data = arrays.Surface;
     vtkDataArray* const excluded = excludeMasked ? arrays.Mask.Values.Get() : nullptr;
     std::vector<Index>& cells = this->Cells[b];
     const bool onCells = arrays.Mask.OnCells;
-    inputs[b].Name = surfaces[b].Name;
+    inputs[b].Name = arrays.Name;
     inputs[b].SurfaceVersion = FingerprintSurface(data, excluded, onCells);
     inputs[b].FieldsVersion = FingerprintFields(arrays);
     inputs[b].ReadSurface = [data, excluded, onCells, &cells]
@@ -35,25 +35,25 @@ std::vector<BlockInput> BlockInputs::Describe(
 }
 
 std::vector<BlockInput> BlockInputs::Make(
-  const std::vector<SurfaceInput>& surfaces, bool excludeMasked)
+  const std::vector<InputFields>& surfaces, bool excludeMasked)
 {
   this->Decomposition.reset();
   std::vector<BlockInput> inputs = this->Describe(surfaces, excludeMasked);
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    inputs[b].ReadFields = [surface = surfaces[b], &cells = this->Cells[b]]
+    inputs[b].ReadFields = [&arrays = surfaces[b], &cells = this->Cells[b]]
     {
-      if (surface.Fields->GlobalIds)
+      if (arrays.GlobalIds)
       {
-        RequireTuples(surface.Fields->GlobalIds, surface.Data->GetNumberOfPoints(), "point");
+        RequireTuples(arrays.GlobalIds, arrays.Surface->GetNumberOfPoints(), "point");
       }
-      return ReadFields(*surface.Fields, cells, surface.Data->GetNumberOfCells());
+      return ReadFields(arrays, cells);
     };
   }
   return inputs;
 }
 
-std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<SurfaceInput>& surfaces,
+std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<InputFields>& surfaces,
   bool excludeMasked, double seamTolerance, vtkMultiProcessController* controller,
   const std::shared_ptr<const bool>& abortRequested)
 {
@@ -64,8 +64,8 @@ std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<SurfaceInput
   std::vector<BlockInput> inputs = this->Describe(surfaces, excludeMasked);
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
-    vtkPointData* const points = surfaces[b].Data->GetPointData();
-    this->Decomposition->SetPiece(surfaces[b].Data, seamTolerance);
+    vtkPointData* const points = surfaces[b].Surface->GetPointData();
+    this->Decomposition->SetPiece(surfaces[b].Surface, seamTolerance);
     inputs[b].SurfaceVersion.AddNumber(seamTolerance);
     for (vtkDataArray* array :
       { points->GetGlobalIds(), points->GetArray(vtkDataSetAttributes::GhostArrayName()) })
@@ -74,9 +74,9 @@ std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<SurfaceInput
     }
     inputs[b].Decomposition = this->Decomposition.get();
     inputs[b].ReadFields =
-      [surface = surfaces[b], &cells = this->Cells[b], decomposition = this->Decomposition.get()]
+      [&arrays = surfaces[b], &cells = this->Cells[b], decomposition = this->Decomposition.get()]
     {
-      Fields read = ReadFields(*surface.Fields, cells, surface.Data->GetNumberOfCells());
+      Fields read = ReadFields(arrays, cells);
       read.MakeIds = [decomposition] { return decomposition->PointIds(); };
       return read;
     };

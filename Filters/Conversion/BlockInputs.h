@@ -10,18 +10,8 @@
 #include <memory>
 #include <vector>
 
-class vtkPolyData;
-
 namespace SurfaceDiffusion
 {
-
-/// A surface of the input with its arrays, which must live until the run has read them.
-struct SurfaceInput
-{
-  vtkPolyData* Data;
-  const InputFields* Fields;
-  std::string Name = {}; ///< of a block, for messages
-};
 
 /// Describes the surfaces of an update to a Run: hashes of their contents, and functions that read
 /// them. The contents are hashed in every update, because arrays that were edited in place need not
@@ -29,12 +19,13 @@ struct SurfaceInput
 class BlockInputs
 {
 public:
-  /// The inputs of surfaces that this process has as a whole.
-  std::vector<BlockInput> Make(const std::vector<SurfaceInput>& surfaces, bool excludeMasked);
+  /// The inputs of surfaces that this process has as a whole, which must live until the run has read
+  /// them.
+  std::vector<BlockInput> Make(const std::vector<InputFields>& surfaces, bool excludeMasked);
 
   /// The same for surfaces of which every process has a piece. seamTolerance: see PointIdentity.
-  std::vector<BlockInput> MakeOfPieces(const std::vector<SurfaceInput>& surfaces,
-    bool excludeMasked, double seamTolerance, vtkMultiProcessController* controller,
+  std::vector<BlockInput> MakeOfPieces(const std::vector<InputFields>& surfaces, bool excludeMasked,
+    double seamTolerance, vtkMultiProcessController* controller,
     const std::shared_ptr<const bool>& abortRequested);
 
   /// Null unless the last inputs were pieces.
@@ -44,7 +35,7 @@ public:
   const std::vector<Index>& CellsOf(std::size_t surface) const { return this->Cells[surface]; }
 
 private:
-  std::vector<BlockInput> Describe(const std::vector<SurfaceInput>& surfaces, bool excludeMasked);
+  std::vector<BlockInput> Describe(const std::vector<InputFields>& surfaces, bool excludeMasked);
 
   std::vector<std::vector<Index>> Cells; ///< per surface: the cell of each triangle
   std::unique_ptr<PieceDecomposition> Decomposition;

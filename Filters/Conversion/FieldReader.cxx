@@ -205,9 +205,9 @@ Fingerprint FingerprintFields(const InputFields& arrays)
   return fingerprint;
 }
 
-Fields ReadFields(
-  const InputFields& arrays, const std::vector<Index>& cells, vtkIdType numberOfCells)
+Fields ReadFields(const InputFields& arrays, const std::vector<Index>& cells)
 {
+  const vtkIdType numberOfCells = arrays.Surface->GetNumberOfCells();
   Fields fields;
   if (vtkDataArray* const data = arrays.Data.Values)
   {

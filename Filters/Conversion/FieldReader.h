@@ -29,9 +29,11 @@ struct AbsentArray
 
 using LocatedArray = Located<vtkSmartPointer<vtkDataArray>>;
 
-/// The input arrays of one block, found and checked.
+/// A surface of the input with its arrays, found and checked.
 struct InputFields
 {
+  vtkPolyData* Surface = nullptr; ///< must live until a run has read it
+  std::string Name; ///< of a block, for messages
   std::vector<AbsentArray> Absent;
   vtkSmartPointer<vtkDataArray> NoDirection; ///< zeros: a block without the directions of others
   LocatedArray Data; ///< index 0
@@ -70,10 +72,8 @@ Values ReadValues(vtkDataArray* array, bool alphaIsData = false);
 /// The hash of everything that ReadFields() reads.
 Fingerprint FingerprintFields(const InputFields& arrays);
 
-/// cells: the cell of each triangle of the surface's input, of numberOfCells. Throws
-/// std::runtime_error, with the property's name, on infinite directions and on rates that are
-/// negative or not finite.
-Fields ReadFields(
-  const InputFields& arrays, const std::vector<Index>& cells, vtkIdType numberOfCells);
+/// cells: the cell of each triangle. Throws std::runtime_error, with the property's name, on infinite
+/// directions and on rates that are negative or not finite.
+Fields ReadFields(const InputFields& arrays, const std::vector<Index>& cells);
 
 } // namespace SurfaceDiffusion

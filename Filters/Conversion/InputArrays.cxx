@@ -153,8 +153,8 @@ LocatedArray InputArrays::Find(int index, const char* property, int components) 
   return { array, isOnCells };
 }
 
-void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std::string>& blocks,
-  Problems& problems, std::vector<Sentence>& warnings)
+void SettleAbsence(
+  const std::vector<InputFields>& blocks, Problems& problems, std::vector<Sentence>& warnings)
 {
   struct Absence
   {
@@ -162,17 +162,17 @@ void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std
     std::vector<std::string> Blocks;
   };
   std::map<int, Absence> absences;
-  for (std::size_t b = 0; b < fields.size(); ++b)
+  for (const InputFields& block : blocks)
   {
-    for (const AbsentArray& array : fields[b].Absent)
+    for (const AbsentArray& array : block.Absent)
     {
       const auto entry = absences.insert({ array.Index, { array, {} } }).first;
-      entry->second.Blocks.push_back(blocks[b]);
+      entry->second.Blocks.push_back(block.Name);
     }
   }
   for (const auto& [index, absence] : absences)
   {
-    if (absence.Blocks.size() == fields.size())
+    if (absence.Blocks.size() == blocks.size())
     {
       problems.push_back(absence.Array.Problem);
     }

@@ -36,8 +36,8 @@ private:
 };
 
 /// Decides about the absent arrays of all blocks. One that no block has is a problem. One that
-/// another block has counts as not set, with a sentence in `warnings`. blocks: their names.
-void SettleAbsence(const std::vector<InputFields>& fields, const std::vector<std::string>& blocks,
-  Problems& problems, std::vector<Sentence>& warnings);
+/// another block has counts as not set, with a sentence in `warnings`.
+void SettleAbsence(
+  const std::vector<InputFields>& blocks, Problems& problems, std::vector<Sentence>& warnings);
 
 } // namespace SurfaceDiffusion

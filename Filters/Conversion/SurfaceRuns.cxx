@@ -13,7 +13,7 @@ namespace SurfaceDiffusion
 {
 
 void SurfaceRuns::Update(
-  const std::vector<SurfaceInput>& surfaces, Settings& settings, const ProgressMonitor& progress)
+  const std::vector<InputFields>& surfaces, Settings& settings, const ProgressMonitor& progress)
 {
   this->Runs.resize(surfaces.size());
   this->Names.resize(surfaces.size());

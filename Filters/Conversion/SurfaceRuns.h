@@ -33,7 +33,7 @@ public:
   /// Update the run of each surface. settings: of the class of the runs. Throws std::runtime_error,
   /// std::bad_alloc, Aborted.
   void Update(
-    const std::vector<SurfaceInput>& surfaces, Settings& settings, const ProgressMonitor& progress);
+    const std::vector<InputFields>& surfaces, Settings& settings, const ProgressMonitor& progress);
 
   /// Add the outputs of a surface. fields: its arrays. resultArrayName: see vtkSurfaceFilter.
   /// Appends the names of arrays of the input that are replaced.
