@@ -213,6 +213,7 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
     sum.NonManifoldEdges += found.NonManifoldEdges;
     sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
     sum.CoincidenceDistance = std::max(sum.CoincidenceDistance, found.CoincidenceDistance);
+    sum.MergesPoints = found.MergesPoints;
     sum.EdgesLeft += found.EdgesLeft;
     surfaces.Add(block->SurfaceVersion);
     masks.Add(block->MaskVersion);
@@ -230,8 +231,8 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
   addCount(
     sum.NonManifoldEdges, " edges have three or more triangles, which all exchange over them");
   processes.Max(&sum.CoincidenceDistance, 1);
-  addCount(sum.CoincidentBoundaryPoints,
-    SentenceOfCoincidence(sum.CoincidenceDistance, " and nothing flows between them"));
+  addCount(
+    sum.CoincidentBoundaryPoints, SentenceOfCoincidence(sum, " and nothing flows between them"));
   addCount(sum.EdgesLeft,
     " edges of the intrinsic Delaunay triangulation could not be flipped within the limit of 50 "
     "checks per side, or at triangles that are nearly flat: values can leave the bounds of the "

@@ -139,12 +139,10 @@ Surface::Surface(SurfaceArrays arrays, const SurfaceOptions& options, const Para
     this->Working->Diagnostics().DegenerateTriangles - (isPoint ? 0 : joined);
   this->Found.NonManifoldEdges = this->Working->Diagnostics().NonManifoldEdges;
   this->Found.EdgesLeft = this->Flipped ? this->Flipped->NumberOfEdgesLeft() : 0;
-  if (!options.MergeCoincidentPoints)
-  {
-    const Seams seams = FindSeams(*this->Input, this->Arrays.Points);
-    this->Found.CoincidentBoundaryPoints = seams.NumberOfVertices;
-    this->Found.CoincidenceDistance = seams.Distance;
-  }
+  const Seams seams = FindSeams(*this->Input, this->Arrays.Points);
+  this->Found.CoincidentBoundaryPoints = seams.NumberOfVertices;
+  this->Found.CoincidenceDistance = seams.Distance;
+  this->Found.MergesPoints = options.MergeCoincidentPoints;
 }
 
 /// Drop the triangles with an excluded corner, and replace merged points by their representatives.
@@ -323,13 +321,18 @@ void Surface::FindVertices()
   }
 }
 
-Sentence SentenceOfCoincidence(double distance, const char* consequence)
+Sentence SentenceOfCoincidence(const SurfaceDiagnostics& found, const char* consequence)
 {
+  const double distance = found.CoincidenceDistance;
   Sentence text = " boundary points coincide with others";
-  text << consequence << " (to join them, set " << Word::Setting("MergeCoincidentPoints");
+  text << consequence << " (to join them, set ";
+  if (!found.MergesPoints)
+  {
+    text << Word::Setting("MergeCoincidentPoints") << (distance > 0.0 ? ", and " : "");
+  }
   if (distance > 0.0)
   {
-    text << ", and " << Word::Setting("MergeTolerance") << " to " << distance;
+    text << Word::Setting("MergeTolerance") << " to " << distance;
   }
   return text << ")";
 }

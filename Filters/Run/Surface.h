@@ -51,14 +51,14 @@ struct SurfaceDiagnostics
   Index DegenerateTriangles = 0;
   Index UnusedPoints = 0; ///< not in any participating triangle; excluded points do not count
   Index NonManifoldEdges = 0;
-  Index CoincidentBoundaryPoints = 0; ///< Seams::NumberOfVertices; counted if merging is off
+  Index CoincidentBoundaryPoints = 0; ///< Seams::NumberOfVertices, of points that are not merged
   double CoincidenceDistance = 0.0; ///< Seams::Distance
+  bool MergesPoints = false; ///< SurfaceOptions::MergeCoincidentPoints
   Index EdgesLeft = 0; ///< IntrinsicDelaunay::NumberOfEdgesLeft()
 };
 
-/// What follows the number of CoincidentBoundaryPoints: how far they are apart, the consequence, and
-/// what joins them.
-Sentence SentenceOfCoincidence(double distance, const char* consequence);
+/// What follows the number of CoincidentBoundaryPoints: the consequence, and what joins them.
+Sentence SentenceOfCoincidence(const SurfaceDiagnostics& found, const char* consequence);
 
 /// The surface that the numerics work on, and the way back to its points.
 class Surface

@@ -68,17 +68,16 @@ std::map<std::string, Values> SurfaceRun::FindAllNumbers(const std::vector<const
 std::vector<Warning> SurfaceRun::FindAllWarnings(
   const std::vector<const SurfaceRun*>& runs, const std::vector<std::string>& blocks)
 {
-  Index degenerate = 0;
-  Index coincident = 0;
-  double distance = 0.0;
+  SurfaceDiagnostics sum;
   Fingerprint surfaces, causes;
   BlockSentences ofRuns;
   for (std::size_t r = 0; r < runs.size(); ++r)
   {
     const SurfaceDiagnostics& found = runs[r]->Domain->Diagnostics();
-    degenerate += found.DegenerateTriangles;
-    coincident += found.CoincidentBoundaryPoints;
-    distance = std::max(distance, found.CoincidenceDistance);
+    sum.DegenerateTriangles += found.DegenerateTriangles;
+    sum.CoincidentBoundaryPoints += found.CoincidentBoundaryPoints;
+    sum.CoincidenceDistance = std::max(sum.CoincidenceDistance, found.CoincidenceDistance);
+    sum.MergesPoints = found.MergesPoints;
     surfaces.Add(runs[r]->SurfaceVersion);
     for (const Warning& warning : runs[r]->FindOwnWarnings())
     {
@@ -93,17 +92,17 @@ std::vector<Warning> SurfaceRun::FindAllWarnings(
   {
     warnings.push_back({ sentence, causes });
   }
-  if (degenerate > 0)
+  if (sum.DegenerateTriangles > 0)
   {
     Sentence text;
-    text << degenerate << " triangles of zero area " << runs.front()->OfDegenerate;
+    text << sum.DegenerateTriangles << " triangles of zero area " << runs.front()->OfDegenerate;
     warnings.push_back({ text, surfaces });
   }
   const char* const ofCoincident = runs.empty() ? nullptr : runs.front()->OfCoincident;
-  if (coincident > 0 && ofCoincident)
+  if (sum.CoincidentBoundaryPoints > 0 && ofCoincident)
   {
     Sentence text;
-    text << coincident << SentenceOfCoincidence(distance, ofCoincident);
+    text << sum.CoincidentBoundaryPoints << SentenceOfCoincidence(sum, ofCoincident);
     warnings.push_back({ text, surfaces });
   }
   return warnings;

@@ -300,6 +300,11 @@ TEST(Surfaces, WhoseSeamsCoincideUpToRoundOffAreReportedWithTheToleranceThatJoin
   EXPECT_GT(largestJump(), 1e-4);
   messages.Warnings.clear();
   filter->MergeCoincidentPointsOn();
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("(to join them, set MergeTolerance to "), std::string::npos)
+    << messages.Warnings[0];
+  messages.Warnings.clear();
   filter->SetMergeTolerance(tolerance);
   filter->Update();
   EXPECT_TRUE(messages.Warnings.empty()) << messages.Warnings[0];

@@ -102,7 +102,7 @@ protected:
     return this->Attributes(filter->GetOutput())->GetArray("result");
   }
 
-  const vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(3));
+  const vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(4));
 };
 
 class EveryKindWithData : public EveryKind

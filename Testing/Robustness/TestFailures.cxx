@@ -33,7 +33,7 @@ protected:
     vtkSurfaceFilter::SafeDownCast(this->Filter)->SetNumberOfThreads(number);
   }
 
-  vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(3));
+  vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(4));
   vtkSmartPointer<vtkPolyDataAlgorithm> Filter = this->GetParam().Make();
 };
 

@@ -60,7 +60,7 @@ protected:
     }
   }
 
-  vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(3));
+  vtkSmartPointer<vtkPolyData> Surface = Sphere(this->GetParam().Levels(4));
   vtkSmartPointer<vtkPolyDataAlgorithm> Filter;
   vtkSmartPointer<vtkDataArray> First;
 };
