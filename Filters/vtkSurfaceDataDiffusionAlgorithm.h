@@ -14,8 +14,10 @@
  *
  * **Fidelity per point or cell.** Input array 5, FidelityArray, is an optional array of one
  * component whose values w >= 0 multiply lambda, for data that are not equally reliable: with noise
- * of standard deviation s_i at point i, w_i is proportional to 1/s_i^2. A point with w = 0 starts
- * from its value, which has no further effect. If w varies, the sum of A_i u_i is not conserved.
+ * of standard deviation s_i at point i, w_i is proportional to 1/s_i^2. In time steps, a point with
+ * w = 0 starts from its value, which has no further effect; a steady state and the edges of
+ * vtkMumfordShahFilter do not depend on it, so that it is missing. If w varies, the sum of A_i u_i is
+ * not conserved.
  * Factors of cells are averaged at the points if the data are on points; if they are on cells, too,
  * P f is the mean weighted by them. With AutomaticFidelity the discrepancy is the mean over the
  * surface weighted by w.

@@ -96,6 +96,15 @@ Vector ReadCellFactors(const Fields& fields)
   return factors;
 }
 
+/// The means of weights of cells over the control cells of vertices: not CellTransfer::ToVertices(),
+/// which may leave their bounds.
+Vector MeansAround(const CellTransfer& transfer, const Vector& weights)
+{
+  const Values none(weights.size(), 0);
+  return transfer.ToVertices(none, weights)
+    .Weights.cwiseQuotient(transfer.ToVertices(none, Vector::Ones(weights.size())).Weights);
+}
+
 /// CellTransfer::ToVertices() of values or of lines.
 VertexMeans Average(const CellState& cells, const Values& ofCells, const Vector& weights)
 {
@@ -171,12 +180,10 @@ void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cel
         ofVertices = MakeFidelityFactors(surface, fields);
       }
     });
-  const Vector ones = Vector::Ones(fields.NumberOfCells);
-  const Vector areas = cells.Transfer.ToVertices(Values(ones.size(), 0), ones).Weights;
-  const VertexMeans weighted = Average(cells, given.Of, given.Known.cwiseProduct(ofCells));
-  data.FidelityFactors = weighted.Weights.cwiseQuotient(areas).cwiseProduct(ofVertices);
-  cells.Factors = given.Known.cwiseProduct(ofCells).cwiseProduct(
-    Vector(cells.Transfer.ToCells(ofVertices).col(0)));
+  const Vector weights = given.Known.cwiseProduct(ofCells);
+  const VertexMeans weighted = Average(cells, given.Of, weights);
+  data.FidelityFactors = MeansAround(cells.Transfer, weights).cwiseProduct(ofVertices);
+  cells.Factors = weights.cwiseProduct(Vector(cells.Transfer.ToCells(ofVertices).col(0)));
   for (Eigen::Index v = 0; v < weighted.Of.rows(); ++v)
   {
     if (cells.Reading.UsesFidelity && weighted.Weights[v] > 0.0)
@@ -300,11 +307,11 @@ void MoveMarksToData(
   }
   if (processes.Any(fields.FidelityFactors.OnCells))
   {
-    Values factors;
+    Vector factors;
     RunCollectively(processes, [&] { factors = ReadCellFactors(fields); });
     const CellTransfer transfer = MakeCellTransfer(surface, fields, parallel);
-    fields.FidelityFactors.Values = SpreadToPoints<double>(surface,
-      Vector(transfer.ToVertices(factors, Vector::Ones(fields.NumberOfCells)).Of.col(0)), 1.0);
+    fields.FidelityFactors.Values =
+      SpreadToPoints<double>(surface, MeansAround(transfer, factors), 1.0);
   }
   fields.Mask.OnCells = fields.Fixed.OnCells = fields.FidelityFactors.OnCells = false;
 }

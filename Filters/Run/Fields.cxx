@@ -80,6 +80,19 @@ void CheckFidelityFactors(const Fields& fields)
   }
 }
 
+void LeaveOutWeightless(Fields& fields)
+{
+  const std::vector<double>& factors = fields.FidelityFactors.Values;
+  for (std::size_t i = 0; i < factors.size(); ++i)
+  {
+    if (factors[i] == 0.0 && !IsSet(fields.Fixed.Values, static_cast<Eigen::Index>(i)))
+    {
+      fields.Missing.resize(factors.size(), 0);
+      fields.Missing[i] = 1;
+    }
+  }
+}
+
 Vector MakeFidelityFactors(const Surface& surface, const Fields& fields)
 {
   CheckFidelityFactors(fields);

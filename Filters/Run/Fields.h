@@ -106,6 +106,10 @@ InputError ErrorAt(
 /// Throws InputError on fidelity factors that are negative or not finite.
 void CheckFidelityFactors(const Fields& fields);
 
+/// Count data whose fidelity factor is 0 as missing, unless they are fixed: a steady state does not
+/// depend on them, and no unit or estimate may. Factors and data must be in the same place.
+void LeaveOutWeightless(Fields& fields);
+
 /// The mean factor of each vertex over its participating points. Throws as CheckFidelityFactors().
 Vector MakeFidelityFactors(const Surface& surface, const Fields& fields);
 

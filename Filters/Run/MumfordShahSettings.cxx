@@ -165,6 +165,7 @@ ModelTraits MumfordShahSettings::DescribeModel() const
 {
   ModelTraits traits = this->DescribeSteps();
   traits.MayEndEarly = true;
+  traits.WeightlessAreMissing = true; // steps are alternations of a minimisation
   traits.ResultSuffix = "MumfordShah";
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FidelityWeight > 0.0;

@@ -108,11 +108,16 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
     processes.Any(fields->Data.OnCells); // that of a process without points, too
   MoveMarksToData(
     block.WholeSurface ? *block.WholeSurface : *block.Surface, *fields, processes, this->Parallel);
+  const ModelTraits traits = this->Settings->DescribeModel();
+  if (traits.WeightlessAreMissing && traits.UsesFidelity &&
+    fields->FidelityFactors.OnCells == fields->Data.OnCells)
+  {
+    LeaveOutWeightless(*fields);
+  }
   this->LeaveOutUndetermined(input, *fields, processes, block, progress);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
-  block.Statistics.Add(
-    *block.Surface, *fields, inpaint, !this->Settings->DescribeModel().SettingsInRange.empty());
+  block.Statistics.Add(*block.Surface, *fields, inpaint, !traits.SettingsInRange.empty());
   block.HasData = processes.Any(fields->Data.Values.cols() > 0);
   block.HasMask = !mask.empty();
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });

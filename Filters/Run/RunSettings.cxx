@@ -143,7 +143,7 @@ void TimeSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
 ModelTraits TimeSettings::DescribeSteps(bool steady) const
 {
   ModelTraits traits;
-  traits.IsSteady = steady;
+  traits.IsSteady = traits.WeightlessAreMissing = steady;
   traits.NumberOfSteps = steady ? 1 : this->NumberOfTimeSteps;
   traits.TimeStep = this->TimeStep;
   traits.AbsoluteTime = this->IsAbsolute();

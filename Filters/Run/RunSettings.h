@@ -82,6 +82,8 @@ struct ModelTraits
   std::vector<const char*> SettingsInRange;
   bool StateHasUnitOfValues = true; ///< false: u is a pure number
   bool UsesFidelity = false;
+  /// Data of fidelity factor 0 have no effect, also not as the start of time steps.
+  bool WeightlessAreMissing = true;
   bool UsesKnownValues = false; ///< see KnownValues; the data may be samples
   bool EstimatesNoise = false; ///< needs PointData::Measured
   double MaximumDistance = 0.0; ///< of samples from the surface; 0: any

@@ -118,12 +118,14 @@ void Run::RequireKnownValue(
 {
   bool known = false;
   bool undetermined = false;
+  bool weighted = false;
   Word name = Fields().DataName;
   for (std::size_t b = 0; b < this->Blocks.size(); ++b)
   {
     const Undetermined& found = this->Blocks[b]->Undetermined;
     known = known || found.HasKnown;
     undetermined = undetermined || found.NumberOfComponents > 0.0;
+    weighted = weighted || (fields[b] && !fields[b]->FidelityFactors.Values.empty());
     name = fields[b] && found.NumberOfComponents > 0.0 ? fields[b]->DataName : name;
   }
   if (processes.Any(undetermined) && !processes.Any(known))
@@ -131,6 +133,7 @@ void Run::RequireKnownValue(
     const bool vectors = this->Settings->DescribeModel().StateIsUnitVectors;
     throw InputError(Sentence(name)
       << " has no known value: it is NaN" << (vectors ? ", of length zero" : "")
+      << (weighted ? ", of weight 0" : "")
       << " or masked everywhere; allowed: data with a known value");
   }
 }

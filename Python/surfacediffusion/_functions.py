@@ -71,7 +71,7 @@ fixed : array_like, shape (n,) or (m,), optional
     "fidelity": """\
 fidelity : array_like, shape (n,) or (m,), optional
     Factors w >= 0 of `fidelity_weight` at each point or face, such as 1/s^2 for noise of standard
-    deviation s.""",
+    deviation s. Values of weight 0 are the start of time steps; elsewhere they are missing.""",
     "dtype": """\
 dtype : float32 or float64, optional
     The type of the result; default: float32 for float32, uint8 for uint8 (rounded at the end),

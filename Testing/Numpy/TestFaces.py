@@ -124,6 +124,21 @@ class TestFaces(unittest.TestCase):
         np.testing.assert_array_equal(excluded[of_faces], self.noise[of_faces])
         self.assertGreater(np.abs(excluded - self.noise)[~of_faces].min(), 0.0)
 
+    def test_weights_of_quadrilaterals_are_those_of_their_triangles(self):
+        torus = quad_torus()
+        random = np.random.default_rng(5)
+        points = torus.points + random.uniform(-0.05, 0.05, torus.points.shape)
+        quads, values = Surface(points, torus.faces), points[:, 0]
+        triangles = Surface(points, quads.triangles)
+        for weights in (random.integers(0, 2, quads.n_faces).astype(float),
+                        np.where(np.arange(quads.n_faces) == 7, 1e6, 1.0)):
+            for function, options in ((heat, dict(time_step=1)), (heat, dict(mode="SteadyState")),
+                                      (intrinsic_tv, dict(mode="SteadyState"))):
+                found, expected = (
+                    function(surface, values, fidelity=w, fidelity_weight=1.0, on_faces=False, **options)
+                    for surface, w in ((quads, weights), (triangles, np.repeat(weights, 2))))
+                np.testing.assert_allclose(found, expected, atol=1e-9)
+
     def test_all_functions_take_faces(self):
         surface, m = self.surface, self.surface.n_faces
         centres = surface.points[surface.triangles].mean(axis=1)

@@ -31,6 +31,46 @@ VALUES = 100.0 + (FIRST[:, 2] > 0.7) + 0.1 * np.cos(37.0 * np.arange(N))
 SECOND = np.repeat([False, True], N)
 
 
+class Weights(unittest.TestCase):
+    """Values of weight 0 are missing where they are no start of time steps."""
+
+    def setUp(self):
+        self.surface = sd.sphere(4)
+        points = self.surface.points
+        self.values = (points[:, 2] > 0) + 0.1 * np.random.default_rng(4).normal(size=len(points))
+        self.weights = np.where(points[:, 0] > 0.7, 0.0, 1.0)
+
+    def test_values_of_weight_zero_have_no_effect_on_a_minimum(self):
+        corners = self.surface.triangles
+        of_faces = self.values[corners].mean(axis=1), self.weights[corners].min(axis=1)
+        for values, weights in ((self.values, self.weights), of_faces):
+            for function, options in (
+                    (sd.intrinsic_tv, dict(mode="SteadyState")), (sd.mumford_shah, {}), (sd.segment, {}),
+                    (sd.heat, dict(mode="SteadyState", fidelity_weight=1.0))):
+                results = [np.asarray(getattr(found, "values", found)) for found in (
+                    function(self.surface, np.where(weights > 0, values, other), fidelity=weights, **options)
+                    for other in (1.0, 1e3, np.nan))]
+                for found in results[:2]:
+                    np.testing.assert_array_equal(found, results[2])
+
+    def test_they_are_the_start_of_time_steps(self):
+        options = dict(fidelity=self.weights, fidelity_weight=1.0, time_step=1.0)
+        one, other = (sd.heat(self.surface, np.where(self.weights > 0, self.values, start), **options)
+                      for start in (1.0, 2.0))
+        self.assertGreater(np.abs(one - other)[self.weights == 0].min(), 0.1)
+
+    def test_a_component_without_weight_is_undetermined(self):
+        weights = np.where(SECOND, 0.0, 1.0)
+        values = np.tile(VALUES, 2)
+        found, texts = update(lambda: sd.segment(BOTH, values, fidelity=weights))
+        expected, of_nan = update(lambda: sd.segment(BOTH, np.where(SECOND, np.nan, values)))
+        np.testing.assert_array_equal(found.values, expected.values)
+        self.assertTrue((found.values[N:] == 0).all())
+        self.assertEqual(texts, of_nan)
+        with self.assertRaisesRegex(ValueError, "values has no known value: it is NaN, of weight 0 or masked"):
+            sd.segment(BOTH, values, fidelity=np.zeros(2 * N))
+
+
 def update(work):
     """The result of work(), and its warnings."""
     with warnings.catch_warnings(record=True) as found:
