@@ -275,7 +275,6 @@ TEST(Surfaces, WhoseSeamsCoincideUpToRoundOffAreReportedWithTheToleranceThatJoin
   }
   AddPlaceData(torus);
   auto filter = MakeFilter(torus);
-  filter->SetTimeStep(10.0);
   Messages messages(filter);
   filter->Update();
   ASSERT_EQ(messages.Warnings.size(), 1u);

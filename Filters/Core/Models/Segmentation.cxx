@@ -260,7 +260,7 @@ bool Segmentation::UpdateMeans()
 void Segmentation::SortRegions()
 {
   const std::vector<Eigen::Index> order = AscendingOrder(this->C);
-  if (std::is_sorted(order.begin(), order.end()))
+  if (order.empty())
   {
     return;
   }

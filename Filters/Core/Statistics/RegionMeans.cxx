@@ -294,29 +294,38 @@ Values FindRegionMeans(const TriangleMesh& mesh, const PointData& data, Index re
   {
     return best;
   }
-  Values sorted(best.rows(), best.cols());
+  Values sorted = best;
   const std::vector<Eigen::Index> order = AscendingOrder(best);
-  for (Eigen::Index k = 0; k < best.rows(); ++k)
+  for (std::size_t k = 0; k < order.size(); ++k)
   {
-    sorted.row(k) = best.row(order[static_cast<std::size_t>(k)]);
+    sorted.row(static_cast<Eigen::Index>(k)) = best.row(order[k]);
   }
   return sorted;
 }
 
 std::vector<Eigen::Index> AscendingOrder(const Values& means)
 {
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(means.rows()));
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-    [&](Eigen::Index one, Eigen::Index other)
+  const auto comesBefore = [&](Eigen::Index one, Eigen::Index other)
+  {
+    Eigen::Index c = 0;
+    while (c + 1 < means.cols() && means(one, c) == means(other, c))
     {
-      const Eigen::RowVectorXd a = means.row(one);
-      const Eigen::RowVectorXd b = means.row(other);
-      return !std::isnan(a[0]) &&
-        (std::isnan(b[0]) ||
-          std::lexicographical_compare(
-            a.data(), a.data() + a.size(), b.data(), b.data() + b.size()));
-    });
+      ++c;
+    }
+    return means(one, c) < means(other, c) || (!IsUsed(means, other) && IsUsed(means, one));
+  };
+  std::vector<Eigen::Index> order;
+  const auto count = static_cast<std::size_t>(means.rows());
+  for (std::size_t k = 0; k + 1 < count && order.empty(); ++k)
+  {
+    const auto next = static_cast<Eigen::Index>(k + 1);
+    if (comesBefore(next, next - 1))
+    {
+      order.resize(count);
+    }
+  }
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), comesBefore);
   return order;
 }
 

@@ -27,7 +27,8 @@ Values FindRegionMeans(const TriangleMesh& mesh, const PointData& data, Index re
   const std::vector<Index>& seeds, std::int64_t randomSeed, const std::vector<std::int64_t>& ids,
   const ParallelFor& parallel = SerialFor());
 
-/// The rows of means in ascending order of the first component, then of the next ones; NaN last.
+/// The rows of means in ascending order of the first component, then of the next ones, and unused
+/// ones last; empty if they are in this order.
 std::vector<Eigen::Index> AscendingOrder(const Values& means);
 
 /// The square of the diagonal of the box around the known values, which bounds their distance from
