@@ -360,7 +360,7 @@ def _make_fronts(surface: Surface, speeds: _Speeds, mask: Any) -> Any:
         check_positive(name, factor)
     directions, directions_on_faces = None, False
     if speeds.directions is not None:
-        directions, directions_on_faces = as_directions("directions", speeds.directions, sizes, None)
+        directions, directions_on_faces = as_directions("directions", speeds.directions, sizes)
     elif speeds.along != speeds.across:
         raise ValueError(f"along_speed is {speeds.along} and across_speed is {speeds.across} but "
                          "directions is not set; allowed: equal values, or directions")
@@ -390,7 +390,7 @@ def _as_slowness(surface: Surface, speed: Any) -> NDArray[np.float64] | None:
     if speed is None:
         return None
     array = np.asarray(as_numbers("speed", speed), dtype=np.float64)
-    on_faces = find_place("speed", array, (surface.n_points, surface.n_faces), "number", False)
+    on_faces = find_place("speed", speed, (surface.n_points, surface.n_faces), "number", False)
     bad = ~(np.isfinite(array) & (array >= 0.0))
     if bad.any():
         row = int(np.argmax(bad))

@@ -17,7 +17,7 @@ from . import _core
 from ._functions import left_out
 from ._run import Progress, ProgressReporter, part_of, warn, warn_of_seams
 from ._settings import check_positive, shorten
-from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place
+from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place, place
 
 __all__ = ["Surrogates", "random_field", "surrogates"]
 
@@ -382,12 +382,12 @@ def leave_out_missing(surface: Surface, mask: Any, values: NDArray[np.float64]) 
     if flags is None:
         return missing
     sizes = (surface.n_points, surface.n_faces)
-    if not find_place("mask", flags, sizes, "flag", False):
+    if not find_place("mask", mask, sizes, "flag", False):
         return missing | (flags != 0)
     faces = np.repeat(np.arange(surface.n_faces), np.diff(surface._offsets))
     masked = flags != 0
     masked[faces[missing[surface._connectivity]]] = True
-    return masked
+    return place(masked, True)
 
 
 def find_bands(

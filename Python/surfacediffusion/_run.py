@@ -136,11 +136,11 @@ def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
 
 
 class Input:
-    """The input of a run on one surface. data_on_faces: where the data are. on_faces: where the
-    directions are; None: by their number. Masks and the like are on points or faces by their
-    number. samples: places, values and weights in place of data. integers: the data were, so that
-    results keep them where nothing determines a value, in place of NaN. refined: the refinement that has
-    made the surface, between whose given points nothing was measured."""
+    """The input of a run on one surface. data_on_faces: where the data are. Directions, masks and the
+    like are on points or faces by their number, unless they are Placed. samples: places, values and
+    weights in place of data. integers: the data were, so that results keep them where nothing determines
+    a value, in place of NaN. refined: the refinement that has made the surface, between whose given
+    points nothing was measured."""
 
     def __init__(
         self,
@@ -152,7 +152,6 @@ class Input:
         fixed: Any = None,
         directions: Any = None,
         directions_name: str = "directions",
-        on_faces: bool | None = None,
         rates: Any = None,
         fidelity: Any = None,
         seeds: Any = None,
@@ -163,8 +162,9 @@ class Input:
     ) -> None:
         n, m = surface.n_points, surface.n_faces
         self.surface, self.data, self.integers = surface, data, integers
+        directed_faces = False
         if directions is not None:
-            directions, on_faces = as_directions(directions_name, directions, (n, m), on_faces)
+            directions, directed_faces = as_directions(directions_name, directions, (n, m))
         if rates is not None:
             rates = as_rows("rates", rates, m, 4, "face")
             bad = ~(np.isfinite(rates) & (rates >= 0.0)).all(axis=1)
@@ -175,10 +175,10 @@ class Input:
         self.data_on_faces = data_on_faces
         marks = {"mask": as_flags("mask", mask), "fixed": as_flags("fixed", fixed),
                  "fidelity": as_factors("fidelity", fidelity), "seeds": as_labels("seeds", seeds)}
-        what = {"mask": "flag", "fixed": "flag", "fidelity": "number", "seeds": "label"}
-        places = ["data"] * data_on_faces + ["directions"] * bool(on_faces) + [
-            name for name, array in marks.items()
-            if array is not None and find_place(name, array, (n, m), what[name], data_on_faces)]
+        places = ["data"] * data_on_faces + ["directions"] * directed_faces + [
+            name for name, array, what in (("mask", mask, "flag"), ("fixed", fixed, "flag"),
+                                           ("fidelity", fidelity, "number"), ("seeds", seeds, "label"))
+            if array is not None and find_place(name, array, (n, m), what, data_on_faces)]
         self.core = _core.Fields(
             surface._core, data, 0 if data is None else data_components(data), marks["mask"],
             marks["fixed"], directions, rates, marks["fidelity"], marks["seeds"], data_are_terms,

@@ -38,22 +38,43 @@ def as_rows(name: str, values: Any, rows: int, columns: int, row_name: str) -> N
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
-def find_place(name: str, array: NDArray[Any], sizes: tuple[int, int], what: str,
-               on_faces: bool) -> bool:
-    """Whether an array of one dimension is on faces. sizes: the numbers of points and of faces.
-    on_faces: the answer if these are equal."""
+class Placed(np.ndarray):  # type: ignore[type-arg,unused-ignore]  # numpy 1.21 takes no arguments
+    """An array that is known to be on points or on faces, of which there may be as many. What is computed
+    from it has no known place."""
+
+    on_faces: bool | None = None
+
+
+def place(array: Any, on_faces: bool) -> Placed:
+    """The array at a known place."""
+    placed = np.asarray(array).view(Placed)
+    placed.on_faces = on_faces
+    return placed
+
+
+def _known_place(values: Any) -> bool | None:
+    """Whether values are on faces, if that is known."""
+    return values.on_faces if isinstance(values, Placed) else None
+
+
+def find_place(name: str, values: Any, sizes: tuple[int, int], what: str, on_faces: bool) -> bool:
+    """Whether numbers in one dimension are on faces. sizes: the numbers of points and of faces.
+    on_faces: the answer if these are equal and the values have no known place."""
     n, m = sizes
-    if array.shape not in ((n,), (m,)):
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},), one {what} per point, or "
+    shape = np.shape(values)
+    if shape not in ((n,), (m,)):
+        raise ValueError(f"{name} has shape {shape}; allowed: ({n},), one {what} per point, or "
                          f"({m},), one per face")
-    return on_faces if n == m else array.shape[0] == m
+    known = _known_place(values)
+    return (on_faces if known is None else known) if n == m else shape[0] == m
 
 
-def as_directions(name: str, values: Any, sizes: tuple[int, int],
-                  on_faces: bool | None) -> tuple[NDArray[np.float64], bool]:
-    """Directions on points or faces, and whether they are on faces: by their number unless given."""
+def as_directions(
+    name: str, values: Any, sizes: tuple[int, int]
+) -> tuple[NDArray[np.float64], bool]:
+    """Directions on points or faces, and whether they are on faces: by their number unless known."""
     n, m = sizes
-    array = as_numbers(name, values)
+    array, on_faces = as_numbers(name, values), _known_place(values)
     if array.shape not in ((n, 3), (m, 3)):
         raise ValueError(f"{name} has shape {array.shape}; allowed: ({n}, 3), one row per point, or "
                          f"({m}, 3), one row per face")
@@ -94,11 +115,11 @@ def as_flags(name: str, values: Any, points: int | None = None) -> NDArray[np.ui
 def find_mask(mask: Any, sizes: tuple[int, int]) -> tuple[NDArray[np.uint8] | None, bool]:
     """The flags of a mask, and whether they are on faces. sizes: the numbers of points and of faces."""
     flags = as_flags("mask", mask)
-    return flags, flags is not None and find_place("mask", flags, sizes, "flag", False)
+    return flags, flags is not None and find_place("mask", mask, sizes, "flag", False)
 
 
 def as_outside(roi: Any, *sizes: int) -> NDArray[np.bool_]:
-    """The mask of the outside of a region of interest, which has one of these sizes."""
+    """The mask of the outside of a region of interest, which has one of these sizes, at its place."""
     array = np.ma.getdata(as_numbers("roi", roi))
     if array.shape not in [(size,) for size in sizes]:
         allowed = " or ".join(f"({size},)" for size in sizes)
@@ -107,7 +128,8 @@ def as_outside(roi: Any, *sizes: int) -> NDArray[np.bool_]:
     if not ((array != 0) & ~np.isnan(array)).any():
         raise ValueError("roi is 0 everywhere; allowed: nonzero in the region of interest")
     outside: NDArray[np.bool_] = (array == 0) | np.isnan(array)
-    return outside
+    known = _known_place(roi)
+    return outside if known is None else place(outside, known)
 
 
 def as_factors(name: str, values: Any) -> NDArray[np.float64] | None:

@@ -83,7 +83,7 @@ from ._run import Input, Progress, Runner, find_result_type, take_old_switch
 from ._scales import scale_filter as _scale_filter
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
-from ._surface import Surface, as_data, as_outside, has_integers
+from ._surface import Surface, as_data, as_outside, has_integers, place
 
 __all__: list[str] = []
 __all__ += [*_functions.__all__, "distance", "random_field", "relief", "scale_filter", "surrogates"]
@@ -175,15 +175,14 @@ def segment(
         if terms is None and name is None:
             raise ValueError("array is None and the mesh has no active scalars; allowed: the name of "
                              "an array")
-        data, on_faces = block.find(*(("array", name) if terms is None else ("terms", terms)),
-                                    faces=True)
-        if on_faces and block.has_strips:
+        data = block.find(*(("array", name) if terms is None else ("terms", terms)), faces=True)
+        if data.on_faces and block.has_strips:
             raise ValueError("the data are a cell array of triangle strips; allowed: polygons, for "
                              "example mesh.triangulate()")
-        marks = {argument: block.find(argument, given, faces=True)[0] for argument, given in (
+        marks = {argument: block.find(argument, given, faces=True) for argument, given in (
             ("seeds", seeds), ("mask", mask), ("roi", roi), ("fidelity", fidelity))}
         result, outputs = segment_with_outputs(
-            block.surface, data if terms is None else None, None if terms is None else data, on_faces,
+            block.surface, data if terms is None else None, None if terms is None else data, data.on_faces,
             progress=progress, properties=dict(properties), dtype=None, **marks)
         results.append(result)
         block.name = name
@@ -215,13 +214,14 @@ def interpolate(
         if name is None:
             raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
                              "array")
-        values, weights, places, on_faces = None, None, None, False
+        values, weights, places, on_faces = None, None, None, None
         if points is None:
-            values, on_faces = block.find("array", name, faces=True)
+            values = block.find("array", name, faces=True)
+            on_faces = values.on_faces
             if on_faces and block.has_strips:
                 raise ValueError(f"array is {shorten(name)}, a cell array of triangle strips; allowed: "
                                  "polygons, for example mesh.triangulate()")
-            weights = block.find("fidelity", fidelity, faces=True)[0]
+            weights = block.find("fidelity", fidelity, faces=True)
         else:
             for argument, given in (("array", name), ("fidelity", fidelity)):
                 if given is not None and given not in points.point_data:
@@ -232,9 +232,9 @@ def interpolate(
             values = np.asarray(points.point_data[name])
             weights = None if fidelity is None else np.asarray(points.point_data[fidelity])
         result, outputs = interpolate_with_outputs(
-            block.surface, values, places, on_faces if points is None else None,
-            block.find("mask", mask, faces=True)[0], block.find("roi", roi, faces=True)[0],
-            block.find("direction", direction, faces=True)[0], weights, progress,
+            block.surface, values, places, on_faces, block.find("mask", mask, faces=True),
+            block.find("roi", roi, faces=True), block.find("direction", direction, faces=True), weights,
+            progress,
             {**properties, "_refined": block.refined}, None)
         results.append(result)
         block.name = name
@@ -259,7 +259,7 @@ def denoise_mesh(
     properties, name = _keywords("denoise_mesh", properties)
     blocks, results = _find_surfaces(mesh, "denoise_mesh", properties), []
     for block in blocks:
-        marks = block.find("fixed", fixed, faces=True)[0]
+        marks = block.find("fixed", fixed, faces=True)
         result = _denoise_mesh(block.surface, fixed=marks, progress=progress, **properties)
         results.append(result)
         block.add(name or "Displacement", result.points - block.surface.points, False)
@@ -287,8 +287,8 @@ def relief(
     """
     blocks, results = _find_surfaces(mesh, "relief", keywords), []
     for block in blocks:
-        values = block.find("array", array)[0]
-        marks = block.find("mask", mask, faces=True)[0]
+        values = block.find("array", array)
+        marks = block.find("mask", mask, faces=True)
         result = _relief(block.surface, values, height, mask=marks, progress=progress, **keywords)
         results.append(result)
         block.add(result_array_name, result.heights, False)
@@ -351,14 +351,13 @@ def distance(
     blocks = _find_surfaces(mesh, "distance", {})
     given = getattr(sources, "points", sources)
     for block in blocks:
-        arrays = {"speed": block.find("speed", speed, faces=True)[0],
-                  "directions": block.find("direction", direction, faces=True)[0],
+        arrays = {"speed": block.find("speed", speed, faces=True),
+                  "directions": block.find("direction", direction, faces=True),
                   "along_speed": along_speed, "across_speed": across_speed,
                   "mask": block.find_left_out(mask, roi)}
         rows = given
         if isinstance(sources, str):
-            marks = block.find("sources", sources)[0]
-            assert marks is not None
+            marks = np.asarray(block.find("sources", sources))
             rows = np.flatnonzero(np.nan_to_num(marks))
             names, nowhere = marks[rows], 0
         else:
@@ -431,8 +430,7 @@ def scale_filter(
     blocks = _find_surfaces(mesh, "scale_filter", {})
     for block in blocks:
         name, values = _find_data(block, array)
-        lengths = block.find("wavelength", wavelength)[0] if isinstance(wavelength, str) else wavelength
-        assert lengths is not None
+        lengths = block.find("wavelength", wavelength) if isinstance(wavelength, str) else wavelength
         found = _scale_filter(block.surface, values, lengths, order=order,
                               mask=block.find_left_out(mask, roi), progress=progress)
         _add_columns(block, result_array_name or name + "Filtered", found)
@@ -444,9 +442,7 @@ def _find_data(block: _Block, array: str | None) -> tuple[str, NDArray[Any]]:
     name = array or block.mesh.active_scalars_name
     if name is None:
         raise ValueError("array is not given and the mesh has no active scalars; allowed: point arrays")
-    values, _ = block.find("array", name)
-    assert values is not None
-    return name, values
+    return name, block.find("array", name)
 
 
 def _add_columns(block: _Block, name: str, values: NDArray[Any]) -> None:
@@ -481,10 +477,9 @@ def derivatives(
         if name is None:
             raise ValueError("array is not given and the mesh has no active scalars; allowed: point or "
                              "cell arrays")
-        values, on_faces = block.find("array", name, faces=True)
-        marks = block.find_left_out(mask, roi)
-        assert values is not None
-        result = find_derivatives(block.surface, values, on_faces, marks, None, progress, dict(properties))
+        values = block.find("array", name, faces=True)
+        result = find_derivatives(block.surface, values, values.on_faces, block.find_left_out(mask, roi),
+                                  None, progress, dict(properties))
         results.append(result)
         at_cells = bool(properties.get("result_on_faces", False))
         block.add(given or name + word, result.values, at_cells)
@@ -511,7 +506,7 @@ def direction_field(
         if block.has_strips:
             raise TypeError("the mesh has triangle strips, which have no single direction; allowed: "
                             "polygons, for example mesh.triangulate()")
-        given = None if hints is None else block.find("hints", hints, faces=True)[0]
+        given = block.find("hints", hints, faces=True)
         field = _direction_field(block.surface, given, progress=progress, **properties)
         cells = np.zeros((block.mesh.n_cells, 3))
         cells[block.face_cells] = field
@@ -540,29 +535,27 @@ class _Block:
         self.name = ""  #: of the data
         self.computed = False  #: the data are computed normals, of no array
 
-    def find(
-        self, argument: str, name: str | None, points: bool = True, faces: bool = False
-    ) -> tuple[NDArray[Any] | None, bool]:
-        """An array by name, and whether it is on faces."""
+    def find(self, argument: str, name: str | None, points: bool = True, faces: bool = False) -> Any:
+        """An array by name, as Placed; None stays."""
         if name is None:
-            return None, False
+            return None
         if points and name in self.mesh.point_data:
             if self.refined is not None and argument == "mask" and name in self.origin.point_data:
                 # What is between a masked point and another one is masked.
                 given = np.asarray(self.origin.point_data[name])
-                return interpolate_points(given, self.refined.parents, mask=True), False
-            return np.asarray(self.mesh.point_data[name]), False
+                return place(interpolate_points(given, self.refined.parents, mask=True), False)
+            return place(self.mesh.point_data[name], False)
         if faces and name in self.mesh.cell_data:
-            return np.asarray(self.mesh.cell_data[name])[self.face_cells], True
+            return place(np.asarray(self.mesh.cell_data[name])[self.face_cells], True)
         names = (self.mesh.point_data.keys() if points else []) + (
             self.mesh.cell_data.keys() if faces else [])
         where = " or ".join(["point"] * points + ["cell"] * faces)
         listed = ", ".join(repr(other) for other in names) or "of which there are none"
         raise ValueError(f"{argument} is {shorten(name)}; allowed: {where} arrays, {listed}")
 
-    def find_left_out(self, mask: str | None, roi: str | None) -> NDArray[Any] | None:
+    def find_left_out(self, mask: str | None, roi: str | None) -> Any:
         """The mask, or that of what is outside of the region of interest."""
-        return left_out(self.find("mask", mask, faces=True)[0], self.find("roi", roi, faces=True)[0],
+        return left_out(self.find("mask", mask, faces=True), self.find("roi", roi, faces=True),
                         self.surface)
 
     def add(self, name: str, values: NDArray[Any], on_faces: bool) -> None:
@@ -725,19 +718,21 @@ def _prepare(
     on_faces = integers = False
     if function == "harmonic_map":
         name = array or mesh.point_data.active_normals_name
-        vectors, on_faces = block.find("array", name, faces=True)
+        vectors = block.find("array", name, faces=True)
+        on_faces = name is not None and vectors.on_faces
         data = as_vectors(surface, vectors, properties, on_faces)
         integers = has_integers(vectors)
         block.name = name or "Normals"
         block.computed = name is None
     elif function == "turing_texture":
-        data = as_initial(surface, block.find("initial", array)[0])
+        data = as_initial(surface, block.find("initial", array))
     else:
         name = (array or mesh.point_data.active_scalars_name or mesh.cell_data.active_scalars_name)
         if name is None:
             raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
                              "array")
-        values, on_faces = block.find("array", name, faces=True)
+        values = block.find("array", name, faces=True)
+        on_faces = values.on_faces
         data = as_data(name, values, surface.n_faces if on_faces else surface.n_points,
                        "face" if on_faces else "point")
         integers = has_integers(values)
@@ -746,16 +741,15 @@ def _prepare(
         raise ValueError(f"array is {shorten(name)}, a cell array of triangle strips; allowed: "
                          "polygons, for example mesh.triangulate()")
     mask, roi, direction, fixed, rates, fidelity = names
-    directions, directed_faces = block.find("direction", direction, faces=True)
-    marks = {argument: block.find(argument, given, faces=True)[0]
+    marks = {argument: block.find(argument, given, faces=True)
              for argument, given in (("mask", mask), ("fixed", fixed), ("fidelity", fidelity))}
     if roi is not None:
-        outside = as_outside(block.find("roi", roi, faces=True)[0], surface.n_points, surface.n_faces)
+        outside = as_outside(block.find("roi", roi, faces=True), surface.n_points, surface.n_faces)
         marks["mask"] = outside if outside.any() else None
     block.given = Input(
-        surface, data, data_on_faces=on_faces, directions=directions,
-        directions_name="direction", on_faces=directed_faces, integers=integers,
-        rates=block.find("rates", rates, points=False, faces=True)[0],
+        surface, data, data_on_faces=on_faces,
+        directions=block.find("direction", direction, faces=True), directions_name="direction",
+        integers=integers, rates=block.find("rates", rates, points=False, faces=True),
         refined=block.refined if function in ESTIMATING else None, **marks)
 
 

@@ -34,6 +34,85 @@ def as_surface(mesh):
     return sd.Surface(mesh.points, mesh.faces.reshape(-1, 4)[:, 1:])
 
 
+def quad_torus(spare):
+    """A closed torus of as many quadrilaterals as points, and `spare` points more that no cell uses. Its
+    cell arrays are no means of point arrays."""
+    columns, rows = 20, 12
+    j, i = np.divmod(np.arange(columns * rows), columns)
+    u, v = 2 * np.pi * i / columns, 2 * np.pi * j / rows
+    points = np.column_stack([(3 + np.cos(v)) * np.cos(u), (3 + np.cos(v)) * np.sin(u), np.sin(v)])
+    right, up = (i + 1) % columns, (j + 1) % rows
+    faces = np.column_stack([columns * j + i, columns * j + right, columns * up + right, columns * up + i])
+    mesh = pyvista.PolyData.from_regular_faces(np.vstack([points, np.zeros((spare, 3))]), faces)
+    mesh.point_data["p"] = mesh.points[:, 0] * mesh.points[:, 2]
+    mesh.point_data["marks"] = (np.arange(mesh.n_points) % 240 < 60).astype(float)
+    mesh.cell_data["part"] = np.roll(np.arange(240) < 60, 30).astype(float)
+    mesh.cell_data["c"] = mesh.cell_centers().points[:, 1]
+    mesh.cell_data["speed"] = 1.0 + mesh.cell_data["part"]
+    mesh.cell_data["labels"] = np.where(np.arange(240) < 20, 1, 2 * (np.arange(240) >= 220))
+    mesh.cell_data["around"] = np.cross([0.0, 0.0, 1.0], mesh.cell_centers().points)
+    mesh.cell_data["few"] = np.where(np.arange(240) % 7 == 0, mesh.cell_data["c"], np.nan)
+    return mesh
+
+
+class AsManyPointsAsCells(unittest.TestCase):
+    def assert_arrays_stay_at_their_places(self, function, *arguments, **keywords):
+        found, expected = (function(quad_torus(spare), *arguments, **keywords) for spare in (0, 1))
+        np.testing.assert_allclose(found.points, expected.points[:240], atol=1e-9)
+        self.assertEqual(found.point_data.keys(), expected.point_data.keys())
+        self.assertEqual(found.cell_data.keys(), expected.cell_data.keys())
+        for name, values in found.point_data.items():
+            np.testing.assert_allclose(values, expected.point_data[name][:240], atol=1e-9, err_msg=name)
+        for name, values in found.cell_data.items():
+            np.testing.assert_allclose(values, expected.cell_data[name], atol=1e-9, err_msg=name)
+
+    def test_arrays_of_models_stay_at_their_places(self):
+        for keywords in ({"mask": "part"}, {"roi": "part"}, {"fixed": "part"},
+                         {"fidelity": "part", "fidelity_weight": 1.0},
+                         {"direction": "around", "along_diffusivity": 5.0}):
+            with self.subTest(**keywords):
+                self.assert_arrays_stay_at_their_places(heat, "p", time_step=1.0, **keywords)
+        for keywords in ({"mask": "marks"}, {"roi": "marks"}, {"fixed": "marks"}):
+            with self.subTest(**keywords):
+                self.assert_arrays_stay_at_their_places(heat, "c", time_step=1.0, **keywords)
+        for function, array in ((intrinsic_tv, "p"), (mumford_shah, "p"), (tensor_diffusion, "p"),
+                                (harmonic_map, "around"), (turing_texture, None)):
+            with self.subTest(function=function.__name__):
+                self.assert_arrays_stay_at_their_places(
+                    function, array, mask="marks" if array == "around" else "part", number_of_time_steps=2)
+
+    def test_arrays_of_other_functions_stay_at_their_places(self):
+        for function, arguments, keywords in (
+                (segment, ("p",), {"seeds": "labels"}),
+                (segment, ("p",), {"mask": "part"}),
+                (segment, ("c",), {"fidelity": "marks"}),
+                (interpolate, ("p",), {"mask": "part", "smoothing": 0.1}),
+                (interpolate, ("few",), {"roi": "marks", "smoothing": 0.1}),
+                (interpolate, ("p",), {"fidelity": "part", "smoothing": 0.1}),
+                (interpolate, ("p",), {"direction": "around", "along_diffusivity": 5.0, "smoothing": 0.1}),
+                (denoise_mesh, (), {"fixed": "part", "noise_level": 0.05}),
+                (relief, ("marks", 0.1), {"mask": "part"}),
+                (curvature, (), {"mask": "part"}),
+                (curvature, (), {"roi": "part"}),
+                (derivatives, ("p",), {"mask": "part"}),
+                (direction_field, ("around",), {"method": "Hints"}),
+                (distance, ([100],), {"speed": "speed"}),
+                (distance, ([200],), {"mask": "part"}),
+                (distance, ([100],), {"direction": "around", "along_speed": 3.0}),
+                (random_field, (), {"fwhm": 1.5, "mask": "part"}),
+                (scale_filter, ("p",), {"wavelength": 3.0, "mask": "part"}),
+                (surrogates, ("p", 3), {"roi": "part"})):
+            with self.subTest(function=function.__name__, **keywords):
+                self.assert_arrays_stay_at_their_places(function, *arguments, **keywords)
+
+    def test_missing_values_are_left_out_beside_a_mask_of_cells(self):
+        def filtered(mesh, _=None):
+            mesh.point_data["p"][3] = np.nan
+            return scale_filter(mesh, "p", wavelength=3.0, mask="part")
+
+        self.assert_arrays_stay_at_their_places(filtered)
+
+
 class Meshes(unittest.TestCase):
     def test_heat_is_that_of_the_arrays(self):
         mesh = noisy_sphere()
