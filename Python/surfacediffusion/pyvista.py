@@ -18,7 +18,8 @@ are returned as they are. The input is not modified. Arrays are passed by name:
 
 array
     The data: point array (n,) or (n, k) of any numeric type, NaN is missing, or cell array with m rows,
-    whose result is a cell array unless ``result_on_faces=False``; default: the active scalars.
+    whose result is a cell array unless ``result_on_faces=False``; default: the active scalars,
+    ``mesh.active_scalars_name``.
 mask
     Point or cell array, nonzero is missing (or excluded with ``mask_mode="Exclude"``).
 roi
@@ -170,12 +171,8 @@ def segment(
     properties, result_name = _keywords("segment", properties)
     blocks, results = _find_surfaces(mesh, "segment", properties), []
     for block in blocks:
-        name = (array or block.mesh.point_data.active_scalars_name
-                or block.mesh.cell_data.active_scalars_name)
-        if terms is None and name is None:
-            raise ValueError("array is None and the mesh has no active scalars; allowed: the name of "
-                             "an array")
-        data = block.find(*(("array", name) if terms is None else ("terms", terms)), faces=True)
+        data = (block.find_data(array, faces=True) if terms is None
+                else block.find("terms", terms, faces=True))
         if data.on_faces and block.has_strips:
             raise ValueError("the data are a cell array of triangle strips; allowed: polygons, for "
                              "example mesh.triangulate()")
@@ -185,7 +182,6 @@ def segment(
             block.surface, data if terms is None else None, None if terms is None else data, data.on_faces,
             progress=progress, properties=dict(properties), dtype=None, **marks)
         results.append(result)
-        block.name = name
         _write(block, outputs, result_name)
     return _built(mesh, blocks, results, return_result)
 
@@ -208,21 +204,19 @@ def interpolate(
     properties, result_name = _keywords("interpolate", properties)
     blocks, results = _find_surfaces(mesh, "interpolate", properties), []
     for block in blocks:
-        names = block.mesh.point_data if points is None else points.point_data
-        name = array or names.active_scalars_name or (
-            block.mesh.cell_data.active_scalars_name if points is None else None)
-        if name is None:
-            raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
-                             "array")
         values, weights, places, on_faces = None, None, None, None
         if points is None:
-            values = block.find("array", name, faces=True)
+            values = block.find_data(array, faces=True)
             on_faces = values.on_faces
             if on_faces and block.has_strips:
-                raise ValueError(f"array is {shorten(name)}, a cell array of triangle strips; allowed: "
+                raise ValueError(f"array is {shorten(block.name)}, a cell array of triangle strips; allowed: "
                                  "polygons, for example mesh.triangulate()")
             weights = block.find("fidelity", fidelity, faces=True)
         else:
+            name = array or points.point_data.active_scalars_name
+            if name is None:
+                raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
+                                 "array")
             for argument, given in (("array", name), ("fidelity", fidelity)):
                 if given is not None and given not in points.point_data:
                     raise ValueError(f"{argument} is {shorten(given)}; allowed: point arrays of points, "
@@ -231,14 +225,13 @@ def interpolate(
             places = np.asarray(points.points)
             values = np.asarray(points.point_data[name])
             weights = None if fidelity is None else np.asarray(points.point_data[fidelity])
+            block.name, block.computed = name, True
         result, outputs = interpolate_with_outputs(
             block.surface, values, places, on_faces, block.find("mask", mask, faces=True),
             block.find("roi", roi, faces=True), block.find("direction", direction, faces=True), weights,
             progress,
             {**properties, "_refined": block.refined}, None)
         results.append(result)
-        block.name = name
-        block.computed = points is not None
         _write(block, outputs, result_name)
     return _built(mesh, blocks, results, return_result)
 
@@ -408,10 +401,10 @@ def surrogates(
     """
     blocks = _find_surfaces(mesh, "surrogates", {})
     for block in blocks:
-        name, values = _find_data(block, array)
+        values = block.find_data(array)
         found = _surrogates(block.surface, values, n, seed=seed, mask=block.find_left_out(mask, roi),
                             progress=progress)
-        _add_columns(block, result_array_name or name + "Surrogates", found.values)
+        _add_columns(block, result_array_name or block.name + "Surrogates", found.values)
     return _rebuild(mesh, iter(blocks))
 
 
@@ -429,20 +422,12 @@ def scale_filter(
     """
     blocks = _find_surfaces(mesh, "scale_filter", {})
     for block in blocks:
-        name, values = _find_data(block, array)
+        values = block.find_data(array)
         lengths = block.find("wavelength", wavelength) if isinstance(wavelength, str) else wavelength
         found = _scale_filter(block.surface, values, lengths, order=order,
                               mask=block.find_left_out(mask, roi), progress=progress)
-        _add_columns(block, result_array_name or name + "Filtered", found)
+        _add_columns(block, result_array_name or block.name + "Filtered", found)
     return _rebuild(mesh, iter(blocks))
-
-
-def _find_data(block: _Block, array: str | None) -> tuple[str, NDArray[Any]]:
-    """The point array of this name, or the active scalars."""
-    name = array or block.mesh.active_scalars_name
-    if name is None:
-        raise ValueError("array is not given and the mesh has no active scalars; allowed: point arrays")
-    return name, block.find("array", name)
 
 
 def _add_columns(block: _Block, name: str, values: NDArray[Any]) -> None:
@@ -471,23 +456,21 @@ def derivatives(
     names = [array or block.mesh.active_scalars_name for block in blocks]
     known = [name is not None and (name in block.mesh.point_data or name in block.mesh.cell_data)
              for name, block in zip(names, blocks)]
-    for name, block, is_known in zip(names, blocks, known):
+    for block, is_known in zip(blocks, known):
         if not is_known and any(known):
             continue
-        if name is None:
-            raise ValueError("array is not given and the mesh has no active scalars; allowed: point or "
-                             "cell arrays")
-        values = block.find("array", name, faces=True)
+        values = block.find_data(array, faces=True)
         result = find_derivatives(block.surface, values, values.on_faces, block.find_left_out(mask, roi),
                                   None, progress, dict(properties))
         results.append(result)
         at_cells = bool(properties.get("result_on_faces", False))
-        block.add(given or name + word, result.values, at_cells)
+        name = given or block.name + word
+        block.add(name, result.values, at_cells)
         if result.speed is not None:
-            block.add((given or name) + "Speed", result.speed, at_cells)
-        attributes = block.mesh.GetCellData() if at_cells else block.mesh.GetPointData()
+            block.add((given or block.name) + "Speed", result.speed, at_cells)
         is_vector = word in ("Gradient", "ConductionVelocity") and result.values.shape[1:] == (3,)
-        (attributes.SetActiveVectors if is_vector else attributes.SetActiveScalars)(given or name + word)
+        activate = block.mesh.set_active_vectors if is_vector else block.mesh.set_active_scalars
+        activate(name, preference="cell" if at_cells else "point")
     return _built(mesh, blocks, results, return_result)
 
 
@@ -533,6 +516,7 @@ class _Block:
         self.given: Input | None = None
         self.refined: RefinedSurface | None = None  #: that has made the mesh from the input
         self.name = ""  #: of the data
+        self.on_faces = False  #: the data are a cell array
         self.computed = False  #: the data are computed normals, of no array
 
     def find(self, argument: str, name: str | None, points: bool = True, faces: bool = False) -> Any:
@@ -552,6 +536,19 @@ class _Block:
         where = " or ".join(["point"] * points + ["cell"] * faces)
         listed = ", ".join(repr(other) for other in names) or "of which there are none"
         raise ValueError(f"{argument} is {shorten(name)}; allowed: {where} arrays, {listed}")
+
+    def find_data(self, name: str | None, faces: bool = False) -> Any:
+        """The data, as Placed: the array of this name, or the active scalars. Name and place are kept."""
+        on_cells = False
+        if name is None:
+            active = self.mesh.active_scalars_info
+            name, on_cells = active.name, active.association == pyvista.FieldAssociation.CELL
+            if name is None:
+                raise ValueError("array is None and the mesh has no active scalars; allowed: the name of an "
+                                 "array")
+        values = self.find("array", name, points=not (faces and on_cells), faces=faces)
+        self.name, self.on_faces = name, bool(values.on_faces)
+        return values
 
     def find_left_out(self, mask: str | None, roi: str | None) -> Any:
         """The mask, or that of what is outside of the region of interest."""
@@ -601,6 +598,7 @@ class _Block:
                 active = data.GetAbstractAttribute(kind)
                 if active is not None:
                     attributes.SetActiveAttribute(active.GetName(), kind)
+        mesh.copy_meta_from(given)
         mesh.field_data.update(given.field_data)
         block = _Block(mesh)
         block.origin, block.refined = self.origin, fine
@@ -715,30 +713,23 @@ def _prepare(
     """The input of a block."""
     mesh, surface = block.mesh, block.surface
     data: Any = None
-    on_faces = integers = False
+    integers = False
     if function == "harmonic_map":
         name = array or mesh.point_data.active_normals_name
-        vectors = block.find("array", name, faces=True)
-        on_faces = name is not None and vectors.on_faces
-        data = as_vectors(surface, vectors, properties, on_faces)
+        vectors = None if name is None else block.find_data(name, faces=True)
+        data = as_vectors(surface, vectors, properties, block.on_faces)
         integers = has_integers(vectors)
         block.name = name or "Normals"
         block.computed = name is None
     elif function == "turing_texture":
         data = as_initial(surface, block.find("initial", array))
     else:
-        name = (array or mesh.point_data.active_scalars_name or mesh.cell_data.active_scalars_name)
-        if name is None:
-            raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
-                             "array")
-        values = block.find("array", name, faces=True)
-        on_faces = values.on_faces
-        data = as_data(name, values, surface.n_faces if on_faces else surface.n_points,
-                       "face" if on_faces else "point")
+        values = block.find_data(array, faces=True)
+        data = as_data(block.name, values, surface.n_faces if block.on_faces else surface.n_points,
+                       "face" if block.on_faces else "point")
         integers = has_integers(values)
-        block.name = name
-    if on_faces and block.has_strips:
-        raise ValueError(f"array is {shorten(name)}, a cell array of triangle strips; allowed: "
+    if block.on_faces and block.has_strips:
+        raise ValueError(f"array is {shorten(block.name)}, a cell array of triangle strips; allowed: "
                          "polygons, for example mesh.triangulate()")
     mask, roi, direction, fixed, rates, fidelity = names
     marks = {argument: block.find(argument, given, faces=True)
@@ -747,7 +738,7 @@ def _prepare(
         outside = as_outside(block.find("roi", roi, faces=True), surface.n_points, surface.n_faces)
         marks["mask"] = outside if outside.any() else None
     block.given = Input(
-        surface, data, data_on_faces=on_faces,
+        surface, data, data_on_faces=block.on_faces,
         directions=block.find("direction", direction, faces=True), directions_name="direction",
         integers=integers, rates=block.find("rates", rates, points=False, faces=True),
         refined=block.refined if function in ESTIMATING else None, **marks)
@@ -755,8 +746,8 @@ def _prepare(
 
 def _write_result(block: _Block, output: Output, name: str) -> None:
     """Add an array in place of the data. Cells that are no faces keep the value of the data."""
-    points, cells = block.input.point_data, block.input.cell_data
-    source = points if block.name in points else cells
+    cells = block.input.cell_data
+    source = cells if block.on_faces else block.input.point_data
     has_data = block.name in source and not block.computed
     shape = np.shape(source[block.name]) if has_data else output.values.shape
     values = output.values[:, 0] if len(shape) < output.values.ndim else output.values
@@ -772,17 +763,16 @@ def _activate(block: _Block, output: Output, name: str) -> None:
     """Make the array of an output active, as its role says: vectors in place of the normals, given or
     computed, as normals."""
     on_faces = output.place == "faces"
-    if output.role == "scalars":
-        block.mesh.set_active_scalars(name, preference="cell" if on_faces else "point")
-    elif output.role == "vectors":
-        given = block.input.cell_data if on_faces else block.input.point_data
+    where: Any = "cell" if on_faces else "point"
+    is_vector = output.role == "vectors"
+    given = block.input.cell_data if on_faces else block.input.point_data
+    if is_vector and (block.computed or block.name == given.active_normals_name):
         data = block.mesh.GetCellData() if on_faces else block.mesh.GetPointData()
-        if block.computed or block.name == given.active_normals_name:
-            data.SetActiveNormals(name)
-        elif output.values.shape[1] == 3 and output.values.dtype != np.uint8:
-            data.SetActiveVectors(name)
-        else:
-            data.SetActiveScalars(name)
+        data.SetActiveNormals(name)
+    elif is_vector and output.values.shape[1] == 3 and output.values.dtype != np.uint8:
+        block.mesh.set_active_vectors(name, preference=where)
+    elif output.role:
+        block.mesh.set_active_scalars(name, preference=where)
 
 
 def _write(block: _Block, outputs: list[Output], name: str | None) -> None:

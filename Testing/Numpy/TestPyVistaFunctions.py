@@ -184,6 +184,49 @@ class Meshes(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, words):
                 heat(mesh, "f", fwhm=0.4, **{"roi": "roi", **keywords})
 
+    def test_data_are_by_default_the_active_scalars_of_the_mesh(self):
+        mesh = pyvista.Icosphere(nsub=3)
+        mesh.clear_data()
+        mesh.point_data["p"], mesh.cell_data["c"] = mesh.points[:, 0], mesh.cell_centers().points[:, 2]
+        mesh.point_data["both"], mesh.cell_data["both"] = mesh["p"] ** 2, mesh["c"] ** 2
+        calls = ((heat, {"fwhm": 0.3}), (intrinsic_tv, {"number_of_time_steps": 1}),
+                 (tensor_diffusion, {"number_of_time_steps": 1}),
+                 (mumford_shah, {"number_of_time_steps": 1}), (segment, {}),
+                 (interpolate, {"smoothing": 0.1}), (derivatives, {"quantity": "Laplacian"}))
+        ends = ("Diffused", "TV", "Beltrami", "MumfordShah", "Segmented", "Interpolated", "Laplacian")
+        for active, place in (("c", "cell"), ("p", "point"), ("both", "cell"), ("both", "point")):
+            mesh.set_active_scalars(active, preference=place)
+            for (function, keywords), end in zip(calls, ends):
+                with self.subTest(function=function.__name__, active=active, place=place):
+                    found = function(mesh, **keywords)
+                    data = mesh.cell_data if place == "cell" else mesh.point_data
+                    alone = pyvista.PolyData(mesh.points, mesh.faces)
+                    (alone.cell_data if place == "cell" else alone.point_data)[active] = data[active]
+                    np.testing.assert_array_equal(
+                        found[active + end], function(alone, active, **keywords)[active + end])
+                    self.assertEqual(set(found.array_names) & {name + end for name in ("p", "c", "both")},
+                                     {active + end})
+        mesh.set_active_scalars("p")
+        for function, keywords, end in ((scale_filter, {"wavelength": 1.0}, "Filtered"),
+                                        (surrogates, {"n": 2}, "Surrogates")):
+            self.assertIn("p" + end, function(mesh, **keywords).array_names)
+        mesh.set_active_scalars("c")
+        self.assertIn("cDiffused", heat(mesh, fwhm=0.3, refine_to=0.15).array_names)
+        self.assertIn("cDiffused", heat(pyvista.MultiBlock([mesh]), fwhm=0.3)[0].array_names)
+        with self.assertRaisesRegex(ValueError, "array is 'c'; allowed: point arrays, 'p', 'both'"):
+            scale_filter(mesh, wavelength=1.0)
+
+    def test_the_array_of_a_result_is_the_data_of_the_next_function(self):
+        mesh = pyvista.Icosphere(nsub=3)
+        mesh.clear_data()
+        mesh.point_data["p"], mesh.cell_data["c"] = mesh.points[:, 0], mesh.cell_centers().points[:, 2]
+        twice = heat(heat(mesh, "c", fwhm=0.3), fwhm=0.3)
+        self.assertIn("cDiffusedDiffused", twice.cell_data)
+        of_points = derivatives(mesh, "p", quantity="Laplacian")
+        self.assertIn("pLaplacianDiffused", heat(of_points, fwhm=0.3).point_data)
+        of_cells = derivatives(mesh, "p", quantity="Laplacian", result_on_faces=True)
+        self.assertIn("pLaplacianDiffused", heat(of_cells, fwhm=0.3).cell_data)
+
     def test_both_spellings_of_keywords(self):
         mesh = noisy_sphere()
         np.testing.assert_array_equal(
