@@ -181,7 +181,7 @@ def _run(
         return States(name, runner, given, make, progress)
     with given.surface._lock:
         run = given.surface._runs.setdefault(name, _core.ModelRun(name))
-        return make(run, runner.finish(run, [given], progress, history)[0])
+        return runner.finish(run, [given], lambda found: make(run, found[0]), progress, history)
 
 
 def _are_independent(name: str, runner: Runner) -> bool:
@@ -1090,13 +1090,13 @@ def _run_once(
             surface._runs[name] = _core.SurfaceRuns(name)
         run = surface._runs[name]
         runner.call(run.update, [inputs.core], runner.settings, reporter.callable)
-        reporter.finish_part()
 
         def write(number: int, values: NDArray[Any], source: Any) -> None:
             run.write(0, number, values, source)
 
         outputs = read_outputs(run.outputs(0), write, inputs, runner)
         found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run)}
+        reporter.finish_part()  # last, because the callable may use the run
     warn(found["warnings"])
     return outputs, found
 

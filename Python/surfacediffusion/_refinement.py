@@ -151,8 +151,8 @@ def _refine(surface: Surface, length: float, limit: Any, progress: Progress = Fa
             surface._refined[key] = RefinedSurface(
                 Surface(found["points"], found["triangles"]), found["faces"][:, 0], found["parents"],
                 found["longest_edge"], found["limit_reached"])
-        reporter.finish_part()
         refined: RefinedSurface = surface._refined[key]
+        reporter.finish_part()
     if refined.limit_reached:
         warn([f"refinement stopped at edges of {refined.longest_edge:.6g}, longer than {length:.6g}, "
               f"because maximum_number_of_triangles is {limit}"])

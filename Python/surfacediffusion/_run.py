@@ -232,17 +232,19 @@ class Runner:
         return [spell(self.function, words, self.arrays) for words in run.warnings()]
 
     def finish(
-        self, run: Any, inputs: list[Input], progress: Progress, history: bool = True
-    ) -> list[dict[str, Any]]:
-        """Run to the last step. The common attributes of the result on each surface. history: whether
-        energy and totals of the states are measured, too."""
+        self, run: Any, inputs: list[Input], make: Callable[[list[dict[str, Any]]], Any],
+        progress: Progress, history: bool = True,
+    ) -> Any:
+        """Run to the last step. What `make` makes of the run and the common attributes of the result on
+        each surface. history: whether energy and totals of the states are measured, too."""
         with ProgressReporter(progress) as reporter:
             self.call(run.update, [i.core for i in inputs], self.settings, reporter.callable, history)
             self.call(run.seek, -1, reporter.callable)
-            reporter.finish_part()
-        sentences = self.warnings(run)
+            sentences = self.warnings(run)
+            made = make(self._attributes(run, inputs, sentences))
+            reporter.finish_part()  # last, because the callable may use the run
         warn(sentences)
-        return self._attributes(run, inputs, sentences)
+        return made
 
     def finish_panels(
         self, run: Any, given: Input, output: NDArray[Any], columns: int, progress: Progress
@@ -260,9 +262,9 @@ class Runner:
                 panel = given.core.columns(first, min(columns, output.shape[1] - first))
                 self.call(run.update, [panel], self.settings, reporter.callable, False)
                 self.call(run.seek, -1, reporter.callable)
-                reporter.finish_part()
                 self.call(given.write, run, 0, output, first)
                 known += [text for text in self.warnings(run) if text not in known]
+                reporter.finish_part()
         warn(known)
 
     def visit(

@@ -836,7 +836,7 @@ def _run(
         return whole, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
 
     if times is None:
-        output, reports = build(runner.finish(run, inputs, progress))
+        output, reports = runner.finish(run, inputs, build, progress)
         return (output, reports) if return_result else output
     runner.call(run.update, [given.core for given in inputs], runner.settings, None)
     steps = [_find_step(time, run, runner.interval) for time in times]

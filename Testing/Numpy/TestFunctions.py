@@ -639,6 +639,35 @@ class Interruption(unittest.TestCase):
         tv = sd.intrinsic_tv(surface, z)
         np.testing.assert_array_equal(sd.intrinsic_tv(sd.sphere(4), z), tv)
 
+    def test_a_callable_that_uses_the_surface_leaves_the_result_as_it_is(self):
+        surface = sd.sphere(4)
+        x, z = surface.points[:, 0], surface.points[:, 2]
+        many = np.outer(z, np.arange(1.0, 71.0))
+        for function, values, keywords, others in (
+                (sd.heat, z, {"fwhm": 0.2}, {"fwhm": 1.0}),
+                (sd.heat, many, {"fwhm": 0.2}, {"fwhm": 1.0}),
+                (sd.intrinsic_tv, z, {"number_of_time_steps": 2}, {"number_of_time_steps": 1}),
+                (sd.tensor_diffusion, z, {"number_of_time_steps": 2}, {"number_of_time_steps": 1}),
+                (sd.mumford_shah, z, {"number_of_time_steps": 2}, {"number_of_time_steps": 1}),
+                (sd.segment, z, {}, {"number_of_regions": 3}),
+                (sd.interpolate, z, {"smoothing": 0.1}, {"smoothing": 1.0}),
+                (sd.derivatives, z, {}, {"quantity": "Laplacian"})):
+            finished = []
+
+            def use(_):
+                try:
+                    finished.append(function(surface, x, **others))
+                except RuntimeError as error:
+                    self.assertIn("progress uses the surface", str(error))
+
+            with self.subTest(function=function.__name__, shape=values.shape):
+                expected = np.asarray(function(sd.sphere(4), values, **keywords))
+                np.testing.assert_array_equal(function(surface, values, progress=use, **keywords), expected)
+                self.assertGreater(len(finished), 0)
+        finished = []
+        fine = sd.refine(surface, 0.05, progress=lambda _: finished.append(sd.refine(surface, 0.04)))
+        self.assertLess(fine.surface.n_points, finished[-1].surface.n_points)
+
     def test_progress_grows_to_one(self):
         seen = []
         surface = sd.sphere(5)
