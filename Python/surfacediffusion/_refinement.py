@@ -112,7 +112,7 @@ def refine(
     Parameters
     ----------
     surface : Surface or tuple (points, faces)
-        The surface. Polygons are cut into triangles first.
+        The surface, without given `areas`. Polygons are cut into triangles first.
     length : float
         The length of the longest edge allowed, above 0, in the unit of the coordinates.
     maximum_number_of_triangles : int, default 4,000,000
@@ -135,7 +135,11 @@ def refine(
     >>> bool((fine.at_points(square.points) == fine.surface.points).all())
     True
     """
-    return _refine(as_surface(surface), as_length("length", length), maximum_number_of_triangles, progress)
+    surface, length = as_surface(surface), as_length("length", length)
+    if surface.areas is not None:
+        raise ValueError(f"length is {length:g}, but areas are given for the points; allowed: surfaces "
+                         "without given areas")
+    return _refine(surface, length, maximum_number_of_triangles, progress)
 
 
 def _refine(surface: Surface, length: float, limit: Any, progress: Progress = False) -> RefinedSurface:

@@ -254,6 +254,8 @@ class RefineTo(unittest.TestCase):
 
     def test_is_refused_with_areas(self):
         surface = sd.Surface(self.ball.points, self.ball.triangles, areas=np.ones(42))
+        with self.assertRaisesRegex(ValueError, "^length is 0.25, but areas are given .*; allowed: .*$"):
+            sd.refine(surface, 0.25)
         with self.assertRaisesRegex(ValueError, "^refine_to is 0.25, but areas are given .*; allowed: .*$"):
             sd.heat(surface, self.z, fwhm=0.5, refine_to=0.25)
 
