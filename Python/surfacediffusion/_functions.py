@@ -831,6 +831,9 @@ def interpolate_with_outputs(
     """The result of interpolate(), and all outputs. dtype: of the values; None: that of the data."""
     surface = as_surface(surface)
     refined = properties.pop("_refined", None)
+    if properties.get("exact") and properties.get("smoothing"):
+        raise ValueError(f"smoothing is {shorten(properties['smoothing'])} and exact is True; allowed: one of "
+                         "them")
     mask = _as_mask(mask, roi, surface, properties)
     if points is None:
         data, on_faces = _take("values", values, surface, on_faces)

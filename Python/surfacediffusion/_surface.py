@@ -190,6 +190,8 @@ def _as_points(points: Any) -> NDArray[np.float64]:
 def _as_polygons(faces: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The points of all polygons in a row, and where each polygon begins."""
     allowed = "allowed: an (m, 3) array of rows of points, or a list of polygons"
+    if np.ma.is_masked(faces):
+        raise ValueError(f"faces has masked entries; {allowed}")
     if isinstance(faces, np.ndarray) and faces.dtype != object:
         array = faces
         if array.ndim != 2 or array.shape[1] < 3:
