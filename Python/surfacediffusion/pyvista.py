@@ -52,7 +52,7 @@ import functools
 import inspect
 import math
 import textwrap
-from typing import Any, Callable, Iterator, Sequence
+from typing import Any, Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 import pyvista
@@ -201,6 +201,8 @@ def interpolate(
     Each block of a MultiBlock takes all points. return_result: if True, the function returns a pair: the
     mesh, and the InterpolationResult, of a MultiBlock the list of them.
     """
+    if points is not None and not hasattr(points, "point_data"):
+        raise ValueError(f"points is {shorten(points)}; allowed: a data set with point arrays")
     properties, result_name = _keywords("interpolate", properties)
     blocks, results = _find_surfaces(mesh, "interpolate", properties), []
     for block in blocks:
@@ -213,12 +215,12 @@ def interpolate(
                                  "polygons, for example mesh.triangulate()")
             weights = block.find("fidelity", fidelity, faces=True)
         else:
-            name = array or points.point_data.active_scalars_name
+            name = points.point_data.active_scalars_name if array is None else array
             if name is None:
                 raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
                                  "array")
             for argument, given in (("array", name), ("fidelity", fidelity)):
-                if given is not None and given not in points.point_data:
+                if given is not None and not (isinstance(given, str) and given in points.point_data):
                     raise ValueError(f"{argument} is {shorten(given)}; allowed: point arrays of points, "
                                      + (", ".join(map(repr, points.point_data.keys()))
                                         or "of which there are none"))
@@ -352,6 +354,9 @@ def distance(
         if isinstance(sources, str):
             marks = np.asarray(block.find("sources", sources))
             rows = np.flatnonzero(np.nan_to_num(marks))
+            if rows.size == 0:
+                raise ValueError(f"sources is {shorten(sources)}, which is 0 at all points; allowed: point "
+                                 "arrays that are nonzero at the sources")
             names, nowhere = marks[rows], 0
         else:
             names, nowhere = np.atleast_1d(given) if np.ndim(given) < 2 else np.arange(len(given)), -1
@@ -453,9 +458,7 @@ def derivatives(
     quantity = settings_of("derivatives")["quantity"]
     word = quantity.words[quantity.convert(properties.get("quantity", quantity.default))]
     blocks, results = _find_surfaces(mesh, "derivatives", properties), []
-    names = [array or block.mesh.active_scalars_name for block in blocks]
-    known = [name is not None and (name in block.mesh.point_data or name in block.mesh.cell_data)
-             for name, block in zip(names, blocks)]
+    known = [block.has(block.mesh.active_scalars_name if array is None else array) for block in blocks]
     for block, is_known in zip(blocks, known):
         if not is_known and any(known):
             continue
@@ -523,6 +526,8 @@ class _Block:
         """An array by name, as Placed; None stays."""
         if name is None:
             return None
+        if not isinstance(name, str):
+            raise ValueError(f"{argument} is {shorten(name)}; allowed: the name of an array")
         if points and name in self.mesh.point_data:
             if self.refined is not None and argument == "mask" and name in self.origin.point_data:
                 # What is between a masked point and another one is masked.
@@ -549,6 +554,10 @@ class _Block:
         values = self.find("array", name, points=not (faces and on_cells), faces=faces)
         self.name, self.on_faces = name, bool(values.on_faces)
         return values
+
+    def has(self, name: Any) -> bool:
+        """Whether there is a point or cell array of this name."""
+        return isinstance(name, str) and (name in self.mesh.point_data or name in self.mesh.cell_data)
 
     def find_left_out(self, mask: str | None, roi: str | None) -> Any:
         """The mask, or that of what is outside of the region of interest."""
@@ -715,7 +724,7 @@ def _prepare(
     data: Any = None
     integers = False
     if function == "harmonic_map":
-        name = array or mesh.point_data.active_normals_name
+        name = mesh.point_data.active_normals_name if array is None else array
         vectors = None if name is None else block.find_data(name, faces=True)
         data = as_vectors(surface, vectors, properties, block.on_faces)
         integers = has_integers(vectors)
@@ -802,6 +811,8 @@ def _run(
     properties, result_name = _keywords(function, properties)
     if names[1] is not None:
         exclude_outside(names[0], properties)
+    if times is not None and not isinstance(times, Iterable):
+        raise ValueError(f"times is {shorten(times)}; allowed: a list of numbers")
     dtype = properties.pop("dtype", None)
     surfaces = _find_surfaces(mesh, function, properties)
     check_colors(properties)
@@ -815,8 +826,7 @@ def _run(
             find_result_type(block.given.data if block.given else None, dtype)
             blocks.append(block)
         except ValueError as error:
-            if array is not None and (
-                    array in block.mesh.point_data or array in block.mesh.cell_data):
+            if block.has(array):
                 raise
             failures.append(error)
     if not blocks:

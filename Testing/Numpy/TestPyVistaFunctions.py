@@ -604,6 +604,20 @@ class Meshes(unittest.TestCase):
             heat(mesh, "f", fhwm=1)
         with self.assertRaisesRegex(ValueError, "times has 'end'; allowed: numbers"):
             heat(mesh, "f", fwhm=1, times=["end"])
+        with self.assertRaisesRegex(ValueError, "times is 3.0; allowed: a list of numbers"):
+            heat(mesh, "f", fwhm=1, times=3.0)
+        for other in (mesh["f"], ["f"]):
+            for function, keywords in ((heat, {"fwhm": 1}), (segment, {}), (interpolate, {}),
+                                       (derivatives, {}), (harmonic_map, {})):
+                with self.assertRaisesRegex(ValueError, "array is .*; allowed: the name of an array"):
+                    function(mesh, other, **keywords)
+            with self.assertRaisesRegex(ValueError, "mask is .*; allowed: the name of an array"):
+                heat(mesh, "f", fwhm=1, mask=other)
+        with self.assertRaisesRegex(ValueError, "points is array.*; allowed: a data set with point arrays"):
+            interpolate(mesh, "f", points=np.asarray(mesh.points))
+        mesh["nowhere"] = np.zeros(mesh.n_points)
+        with self.assertRaisesRegex(ValueError, "sources is 'nowhere', which is 0 at all points; allowed: "):
+            distance(mesh, "nowhere")
         bad = mesh.copy()
         bad["f"][3] = np.inf
         with self.assertRaisesRegex(ValueError, "array is infinite at point 3"):
