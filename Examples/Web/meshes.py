@@ -155,7 +155,7 @@ def _add_arrays(mesh, path, optional):
         columns = [i for i, other in enumerate(data.names) if other == name]
         array = values[:, columns]
         name = name.rsplit("/", 1)[-1]  # GIFTI may name the file that the values come from
-        if name.isdigit() or not name:  # columns without a name
+        if name.isdigit() or not name or data.kind == "curv":  # columns without a name
             name = path.name if len(data.names) == 1 else f"{path.name} {name}"
         mesh.arrays[name] = array[:, 0] if array.shape[1] == 1 else _as_colours(array)
         mesh.origins[name] = data, columns

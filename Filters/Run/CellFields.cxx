@@ -10,6 +10,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -96,13 +97,12 @@ Vector ReadCellFactors(const Fields& fields)
   return factors;
 }
 
-/// The means of weights of cells over the control cells of vertices: not CellTransfer::ToVertices(),
-/// which may leave their bounds.
-Vector MeansAround(const CellTransfer& transfer, const Vector& weights)
+/// The sums of weights of cells over the areas that they have in common with each control cell.
+/// Divided by those of weights of 1, they are means within the bounds of the weights, unlike
+/// VertexMeans::Of of polygons.
+Vector SumsAround(const CellTransfer& transfer, const Vector& weights)
 {
-  const Values none(weights.size(), 0);
-  return transfer.ToVertices(none, weights)
-    .Weights.cwiseQuotient(transfer.ToVertices(none, Vector::Ones(weights.size())).Weights);
+  return transfer.ToVertices(Values(weights.size(), 0), weights).Weights;
 }
 
 /// CellTransfer::ToVertices() of values or of lines.
@@ -157,7 +157,7 @@ CellData ReadCells(const Surface& surface, const Fields& fields, const CellReadi
           << " where " << Word::Array("FixedArray") << " holds it",
         true, c, "allowed there: finite values");
     }
-    const bool known = finite && (isFixed || !(reading.Inpaint && IsSet(fields.Mask.Values, c)));
+    const bool known = finite && (isFixed || !fields.IsLeftOut(c, reading.Inpaint));
     data.HasUnknown = data.HasUnknown || !known;
     data.Known[c] = known ? 1.0 : 0.0;
     data.Damaged[c] = finite && !known ? 1.0 : 0.0;
@@ -182,7 +182,9 @@ void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cel
     });
   const Vector weights = given.Known.cwiseProduct(ofCells);
   const VertexMeans weighted = Average(cells, given.Of, weights);
-  data.FidelityFactors = MeansAround(cells.Transfer, weights).cwiseProduct(ofVertices);
+  data.FidelityFactors =
+    weighted.Weights.cwiseQuotient(SumsAround(cells.Transfer, Vector::Ones(weights.size())))
+      .cwiseProduct(ofVertices);
   cells.Factors = weights.cwiseProduct(Vector(cells.Transfer.ToCells(ofVertices).col(0)));
   for (Eigen::Index v = 0; v < weighted.Of.rows(); ++v)
   {
@@ -310,10 +312,29 @@ void MoveMarksToData(
     Vector factors;
     RunCollectively(processes, [&] { factors = ReadCellFactors(fields); });
     const CellTransfer transfer = MakeCellTransfer(surface, fields, parallel);
-    fields.FidelityFactors.Values =
-      SpreadToPoints<double>(surface, MeansAround(transfer, factors), 1.0);
+    const Vector areas = SumsAround(transfer, Vector::Ones(factors.size()));
+    fields.FidelityFactors.Values = SpreadToPoints<double>(
+      surface, Vector(SumsAround(transfer, factors).cwiseQuotient(areas)), 1.0);
   }
   fields.Mask.OnCells = fields.Fixed.OnCells = fields.FidelityFactors.OnCells = false;
+}
+
+void MarkWeightless(const Surface& surface, Fields& fields)
+{
+  std::vector<char> hasWeight;
+  for (const double factor : fields.FidelityFactors.Values)
+  {
+    hasWeight.push_back(static_cast<char>(factor != 0.0));
+  }
+  if (fields.Data.OnCells && !fields.FidelityFactors.OnCells && !hasWeight.empty())
+  {
+    hasWeight = MarkCells(surface, fields, hasWeight);
+  }
+  for (char& flag : hasWeight)
+  {
+    flag = static_cast<char>(flag == 0);
+  }
+  fields.Weightless = std::move(hasWeight);
 }
 
 PointData MakePointDataOfCells(

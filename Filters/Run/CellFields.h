@@ -27,6 +27,10 @@ CellTransfer MakeCellTransfer(
 void MoveMarksToData(
   const Surface& surface, Fields& fields, const Reduction& processes, const ParallelFor& parallel);
 
+/// Mark the data whose fidelity factor is 0, or that of all corners of their cell: a minimum does not
+/// depend on them, and no unit or estimate may.
+void MarkWeightless(const Surface& surface, Fields& fields);
+
 /// How a model reads data on cells.
 struct CellReading
 {

@@ -80,19 +80,6 @@ void CheckFidelityFactors(const Fields& fields)
   }
 }
 
-void LeaveOutWeightless(Fields& fields)
-{
-  const std::vector<double>& factors = fields.FidelityFactors.Values;
-  for (std::size_t i = 0; i < factors.size(); ++i)
-  {
-    if (factors[i] == 0.0 && !IsSet(fields.Fixed.Values, static_cast<Eigen::Index>(i)))
-    {
-      fields.Missing.resize(factors.size(), 0);
-      fields.Missing[i] = 1;
-    }
-  }
-}
-
 Vector MakeFidelityFactors(const Surface& surface, const Fields& fields)
 {
   CheckFidelityFactors(fields);
@@ -151,7 +138,7 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
       continue;
     }
     this->Largest = std::max(this->Largest, values.row(i).cwiseAbs().maxCoeff());
-    if (!inpaint || !IsSet(fields.Mask.Values, i) || (fixedHere && IsSet(fields.Fixed.Values, i)))
+    if (!fields.IsLeftOut(i, inpaint) || (fixedHere && IsSet(fields.Fixed.Values, i)))
     {
       known.push_back(static_cast<Index>(i));
     }
@@ -263,7 +250,7 @@ PointData MakePointData(const Surface& surface, const Fields& fields, bool inpai
         "allowed there: finite values");
     }
     data.Fixed[v] = data.Fixed[v] || isFixed;
-    if (isFixed || !(isNaN || (inpaint && IsSet(fields.Mask.Values, i))))
+    if (isFixed || !(isNaN || fields.IsLeftOut(i, inpaint)))
     {
       data.Given.row(v) += values.row(i) / unit;
       data.Missing[v] = false;

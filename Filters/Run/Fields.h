@@ -34,6 +34,9 @@ struct Fields
   Eigen::Index FirstColumn = 0;
   Eigen::Index AllColumns = 0; ///< 0: Data has all columns
   std::vector<char> Missing; ///< may be empty
+  /// Per row of Data, nonzero: as if it were masked with MaskMode Inpaint; may be empty. See
+  /// MarkWeightless().
+  std::vector<char> Weightless;
   /// Per point or cell, nonzero: missing or excluded; may be empty. See MoveMarksToData().
   Located<std::vector<char>> Mask;
   Located<std::vector<char>> Fixed; ///< per point or cell, nonzero: Dirichlet; may be empty
@@ -65,6 +68,14 @@ struct Fields
   /// The cell of each input triangle, below NumberOfCells, if one of the arrays is on cells.
   std::vector<Index> Cells;
   Index NumberOfCells = 0;
+
+  /// Whether the value of a row is left out, unless it is fixed.
+  bool IsLeftOut(Eigen::Index row, bool inpaint) const
+  {
+    const auto isSet = [row](const std::vector<char>& flags)
+    { return !flags.empty() && flags[static_cast<std::size_t>(row)] != 0; };
+    return (inpaint && isSet(this->Mask.Values)) || isSet(this->Weightless);
+  }
 
   bool HasCells() const
   {
@@ -105,10 +116,6 @@ InputError ErrorAt(
 
 /// Throws InputError on fidelity factors that are negative or not finite.
 void CheckFidelityFactors(const Fields& fields);
-
-/// Count data whose fidelity factor is 0 as missing, unless they are fixed: a steady state does not
-/// depend on them, and no unit or estimate may. Factors and data must be in the same place.
-void LeaveOutWeightless(Fields& fields);
 
 /// The mean factor of each vertex over its participating points. Throws as CheckFidelityFactors().
 Vector MakeFidelityFactors(const Surface& surface, const Fields& fields);

@@ -109,10 +109,9 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   MoveMarksToData(
     block.WholeSurface ? *block.WholeSurface : *block.Surface, *fields, processes, this->Parallel);
   const ModelTraits traits = this->Settings->DescribeModel();
-  if (traits.WeightlessAreMissing && traits.UsesFidelity &&
-    fields->FidelityFactors.OnCells == fields->Data.OnCells)
+  if (traits.WeightlessAreMissing && traits.UsesFidelity)
   {
-    LeaveOutWeightless(*fields);
+    MarkWeightless(block.WholeSurface ? *block.WholeSurface : *block.Surface, *fields);
   }
   this->LeaveOutUndetermined(input, *fields, processes, block, progress);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;

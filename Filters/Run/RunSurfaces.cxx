@@ -125,7 +125,7 @@ void Run::RequireKnownValue(
     const Undetermined& found = this->Blocks[b]->Undetermined;
     known = known || found.HasKnown;
     undetermined = undetermined || found.NumberOfComponents > 0.0;
-    weighted = weighted || (fields[b] && !fields[b]->FidelityFactors.Values.empty());
+    weighted = weighted || (fields[b] && !fields[b]->Weightless.empty());
     name = fields[b] && found.NumberOfComponents > 0.0 ? fields[b]->DataName : name;
   }
   if (processes.Any(undetermined) && !processes.Any(known))

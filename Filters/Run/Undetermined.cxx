@@ -24,7 +24,7 @@ std::vector<char> FindKnownRows(const Fields& fields, bool inpaint, bool unitVec
   {
     const auto row = fields.Data.Values.row(i);
     known[static_cast<std::size_t>(i)] = !IsSet(fields.Missing, i) && !row.hasNaN() &&
-      !(inpaint && IsSet(fields.Mask.Values, i)) && !(unitVectors && row.isZero(0.0));
+      !fields.IsLeftOut(i, inpaint) && !(unitVectors && row.isZero(0.0));
   }
   return known;
 }

@@ -95,6 +95,13 @@ def interpolate_points(array: NDArray[Any], parents: NDArray[Any], mask: bool = 
     return found
 
 
+def interpolate_weights(weights: NDArray[Any], parents: NDArray[Any]) -> NDArray[Any]:
+    """As interpolate_points(), but what is between a point of weight 0 and another one has weight 0."""
+    without = interpolate_points(weights == 0, parents, mask=True)
+    found: NDArray[Any] = np.where(without, 0, interpolate_points(weights, parents))
+    return found
+
+
 def refine(
     surface: SurfaceLike,
     length: float,
@@ -295,6 +302,8 @@ def take_along(
             carried[name] = fine.at_points(array)
         elif name == "mask":
             carried[name] = interpolate_points(array, fine.parents, mask=True)
+        elif name == "fidelity":
+            carried[name] = interpolate_weights(array, fine.parents)
         else:
             carried[name] = fine.at_points(array)
         if name in _DATA and "on_faces" in given:

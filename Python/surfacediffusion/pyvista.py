@@ -74,7 +74,7 @@ from ._models import (
     ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
 )
 from ._refinement import (
-    ESTIMATING, RefinedSurface, interpolate_points, keywords_of, refine_as_asked,
+    ESTIMATING, RefinedSurface, interpolate_points, interpolate_weights, keywords_of, refine_as_asked,
 )
 from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
@@ -529,10 +529,11 @@ class _Block:
         if not isinstance(name, str):
             raise ValueError(f"{argument} is {shorten(name)}; allowed: the name of an array")
         if points and name in self.mesh.point_data:
-            if self.refined is not None and argument == "mask" and name in self.origin.point_data:
-                # What is between a masked point and another one is masked.
-                given = np.asarray(self.origin.point_data[name])
-                return place(interpolate_points(given, self.refined.parents, mask=True), False)
+            if self.refined is not None and argument in ("mask", "fidelity") and name in self.origin.point_data:
+                # What is between a masked or weightless point and another one is so, too.
+                given, parents = np.asarray(self.origin.point_data[name]), self.refined.parents
+                return place(interpolate_points(given, parents, mask=True) if argument == "mask"
+                             else interpolate_weights(given, parents), False)
             return place(self.mesh.point_data[name], False)
         if faces and name in self.mesh.cell_data:
             return place(np.asarray(self.mesh.cell_data[name])[self.face_cells], True)

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
@@ -70,6 +72,25 @@ TEST(Seams, AreThoseOfPointsThatRoundOffSetsApart)
   const Seams far = OfTwoSheets(5, 1.0, 1e-5, 0.7, 1e6);
   EXPECT_EQ(far.NumberOfVertices, 12);
   EXPECT_GE(far.Distance, 1e-5 - 1e-9);
+}
+
+TEST(Seams, AreFoundAmongVeryManyCopiesOfAPoint)
+{
+  constexpr Index n = 100000; // separate triangles of a cone: pairs would take minutes
+  Points points(3 * n, 3);
+  Triangles triangles(n, 3);
+  for (Index t = 0; t < n; ++t)
+  {
+    const double angle = 8.0 * std::atan(1.0) * t / n;
+    const double next = 8.0 * std::atan(1.0) * ((t + 1) % n) / n;
+    points.row(3 * t) << 0.0, 0.0, 1.0;
+    points.row(3 * t + 1) << std::cos(angle), std::sin(angle), 0.0;
+    points.row(3 * t + 2) << std::cos(next), std::sin(next), 0.0;
+    triangles.row(t) << 3 * t, 3 * t + 1, 3 * t + 2;
+  }
+  const Seams seams = FindSeams(TriangleMesh(points, triangles), points);
+  EXPECT_EQ(seams.NumberOfVertices, 3 * n);
+  EXPECT_EQ(seams.Distance, 0.0);
 }
 
 TEST(Seams, AreNotTheSidesOfASlit)

@@ -53,6 +53,40 @@ class Weights(unittest.TestCase):
                 for found in results[:2]:
                     np.testing.assert_array_equal(found, results[2])
 
+    def test_weights_of_points_leave_faces_between_them_out(self):
+        outside = (self.weights[self.surface.triangles] == 0).all(axis=1)
+        values = self.values[self.surface.triangles].mean(axis=1)
+        for function, options in ((sd.intrinsic_tv, dict(mode="SteadyState")), (sd.mumford_shah, {}),
+                                  (sd.heat, dict(mode="SteadyState", fidelity_weight=1.0))):
+            one, nan = (function(self.surface, np.where(outside, other, values), fidelity=self.weights, **options)
+                        for other in (1e3, np.nan))
+            np.testing.assert_array_equal(one, nan)
+
+    def test_fixed_points_keep_their_values_among_faces_without_weight(self):
+        faces = self.surface.triangles
+        values = self.values[faces].mean(axis=1)
+        point = int(np.argmax(self.surface.points[:, 0]))
+        weights = np.where((faces == point).any(axis=1), 0.0, 1.0)
+        far = int(np.argmin(self.surface.points[faces].mean(axis=1)[:, 0]))
+        for function, options in ((sd.intrinsic_tv, dict(mode="SteadyState")), (sd.mumford_shah, {})):
+            for weightless, fixed in ((weights, point), (np.where(np.arange(len(faces)) == far, 0.0, 1.0), far)):
+                fixed = np.arange(self.surface.n_points) == fixed  # of a face of this number, too
+                self.assertTrue(np.isfinite(
+                    function(self.surface, values, fidelity=weightless, fixed=fixed, **options)).all())
+            given = (np.where(np.arange(len(faces)) == far, other, values) for other in (1e6, 0.5))
+            one, other = (function(self.surface, data, fidelity=weightless, fixed=fixed, **options)
+                          for data in given)
+            np.testing.assert_array_equal(np.delete(one, far), np.delete(other, far))
+
+    def test_what_is_between_them_and_others_has_no_weight_either(self):
+        for function, options in ((sd.intrinsic_tv, dict(mode="SteadyState")), (sd.segment, {}),
+                                  (sd.heat, dict(mode="SteadyState", fidelity_weight=1.0))):
+            one, nan = (np.asarray(getattr(found, "values", found)) for found in (
+                function(self.surface, np.where(self.weights > 0, self.values, other), fidelity=self.weights,
+                         refine_to=0.1, **options) for other in (1e3, np.nan)))
+            rows = slice(self.surface.n_points)
+            np.testing.assert_allclose(one[rows], nan[rows], atol=1e-9)
+
     def test_they_are_the_start_of_time_steps(self):
         options = dict(fidelity=self.weights, fidelity_weight=1.0, time_step=1.0)
         one, other = (sd.heat(self.surface, np.where(self.weights > 0, self.values, start), **options)

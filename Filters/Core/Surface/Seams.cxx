@@ -56,12 +56,16 @@ Seams FindSeams(const TriangleMesh& mesh, const Points& points)
   for (std::size_t k = 0; k < order.size(); ++k)
   {
     const auto [place, i] = order[k];
-    for (std::size_t l = k + 1; l < order.size() && order[l].first - place <= reach[i]; ++l)
+    constexpr int enough = 16; // at the apex of a cone of separate triangles there may be thousands
+    int others = 0;
+    for (std::size_t l = k + 1;
+         others < enough && l < order.size() && order[l].first - place <= reach[i]; ++l)
     {
       const Index j = order[l].second;
       const double apart = distance(i, j);
       if (apart <= std::min(reach[i], reach[j]))
       {
+        ++others;
         coincides[k] = coincides[l] = 1;
         found.Distance = std::max(found.Distance, apart);
       }
