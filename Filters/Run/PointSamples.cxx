@@ -374,8 +374,7 @@ KnownValues FindKnownValues(
   {
     const auto row = static_cast<Eigen::Index>(i);
     if (IsSet(fields.Missing, i) || fields.Data.Values.row(row).hasNaN() ||
-      (!fields.Data.OnCells && IsSet(fields.Between, i)) ||
-      (inpaint && IsSet(fields.Mask.Values, i)))
+      (!fields.Data.OnCells && IsSet(fields.Between, i)) || fields.IsLeftOut(row, inpaint))
     {
       continue;
     }
