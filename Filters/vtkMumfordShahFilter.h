@@ -43,8 +43,8 @@
  * edges everywhere, in the Euclidean norm over all components, and so do slopes above
  * EdgeThreshold/(2 SmoothingLength): the gradient limit of the functional (A. Blake, A. Zisserman,
  * Visual Reconstruction, 1987), for which a staircase costs less than a slope. A
- * warning says which of both it is if more than 30 % of the surface is an edge, and that edges are
- * too close for EdgeWidth if more than 80 % is.
+ * warning says which of both it is if more than 30 % of the surface is an edge, or else that edges
+ * are close together for EdgeWidth.
  *
  * Missing data are filled in with edges that continue through the hole; the start there is harmonic
  * (InitialFill), since a start with jumps at the hole would keep them. Fixed values act on u.

@@ -23,10 +23,8 @@ namespace
 /// an edge are as long.
 constexpr double ShortestCurve = 4.0;
 
-/// Edges on more of the surface are reported if noise or slopes made them. Jumps have them on more
-/// than the second share only if they are closer together than the width of edges.
+/// Edges on more of the surface are reported.
 constexpr double LargestShare = 0.3;
-constexpr double LargestShareOfJumps = 0.8;
 
 /// The threshold below which noise of deviation 1 makes edges, with the default lengths.
 constexpr double NoiseOfEdges = 3.0;
@@ -307,10 +305,6 @@ void MumfordShahSettings::WarnOfManyEdges(
       slopes = slopes || 2.0 * length * found.Slope > jump;
     }
   }
-  if (!noise && !slopes && share < LargestShareOfJumps)
-  {
-    return;
-  }
   const Word automatic = Word::Setting("AutomaticThreshold");
   const Word threshold = Word::Setting("EdgeThreshold");
   const Word length = Word::Setting("SmoothingLength");
@@ -332,7 +326,7 @@ void MumfordShahSettings::WarnOfManyEdges(
   else
   {
     text << "edges are 3 " << width
-         << " wide, which is more than their distances (to separate them, lower " << width
+         << " wide, which is much of their distances (to separate them, lower " << width
          << " or refine the surface; for fewer edges, raise " << threshold;
     if (this->AutomaticThreshold)
     {

@@ -320,8 +320,10 @@ class OtherCommands(CommandTest):
     def test_edges_are_written_as_a_map_and_as_curves(self):
         jump = np.where(POINTS[:, 2] > 0.1 * np.ptp(POINTS[:, 2]), 1.0, 0.0)
         samples.write_gifti("jump.func.gii", {"one": jump})
-        self.succeed("edges lh.surf.gii jump.func.gii out.func.gii --map map.shape.gii "
-                     "--curves curves.npy --threshold 0.3 --length 4 --width 1")
+        code, _, error = run(*("edges lh.surf.gii jump.func.gii out.func.gii --map map.shape.gii "
+                               "--curves curves.npy --threshold 0.3 --length 4 --width 1").split())
+        self.assertEqual(code, 0, error)
+        self.assertIn("% of the surface is an edge: edges are 3 --width wide", error)  # on few vertices
         edges = self.column("map.shape.gii")
         self.assertGreaterEqual(edges.min(), 0)
         self.assertGreater(edges.max(), 0.9)
