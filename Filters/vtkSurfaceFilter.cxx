@@ -399,11 +399,12 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
   task.NeedsMeanEdgeLength =
     this->RefineTo == RefineAutomatically && this->MayRefineAutomatically();
   task.MaximumNumberOfTriangles = this->MaximumNumberOfTriangles;
-  vtkInformation* const mask = this->GetInputArrayInformation(1);
-  if (mask->Has(vtkDataObject::FIELD_NAME()))
+  const auto nameAt = [this](int index) -> std::string
   {
-    task.MaskName = mask->Get(vtkDataObject::FIELD_NAME());
-  }
+    vtkInformation* const array = this->GetInputArrayInformation(index);
+    return array->Has(vtkDataObject::FIELD_NAME()) ? array->Get(vtkDataObject::FIELD_NAME()) : "";
+  };
+  task.Rules = { nameAt(1), nameAt(5) };
   task.FindLength = [this](double meanEdgeLength, Sentence& explanation)
   { return this->FindRefinement(meanEdgeLength, explanation); };
   task.Complete = [this](const std::function<void()>& step)

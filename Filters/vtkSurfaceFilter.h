@@ -160,9 +160,10 @@ public:
    * and no crack opens. The output then has triangles in place of polygons and strips, with the
    * data of their cells and the cell array `vtkOriginalCellIds`, the ids of these. Data of points
    * are linear along the edges, except that integers of one component, which are labels and marks,
-   * become the smaller of two; what is between a masked point and another one is masked. They are
-   * no measurements: interpolation and estimates of noise do not count them. Global ids, ghost
-   * cells and hidden cells are left out. With MergeCoincidentPoints, copies of a point stay copies.
+   * become the smaller of two; what is between a masked point and another one is masked, and has no
+   * weight between one of weight 0 and another one. They are no measurements: interpolation and
+   * estimates of noise do not count them. Global ids, ghost cells and hidden cells are left out. With
+   * MergeCoincidentPoints, copies of a point stay copies.
    */
   vtkSetMacro(RefineTo, double);
   vtkGetMacro(RefineTo, double);

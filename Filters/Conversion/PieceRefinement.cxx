@@ -35,9 +35,9 @@ bool IsInteger(vtkDataArray* array)
 }
 
 /// The array with a tuple more for each pair of parents. isMask: whether numbers other than 0 mean
-/// that a point is masked.
-vtkSmartPointer<vtkAbstractArray> Interpolate(
-  vtkAbstractArray* from, const std::vector<std::array<Index, 2>>& parents, bool isMask)
+/// that a point is masked. isWeight: whether 0 means that it has no value.
+vtkSmartPointer<vtkAbstractArray> Interpolate(vtkAbstractArray* from,
+  const std::vector<std::array<Index, 2>>& parents, bool isMask, bool isWeight)
 {
   const vtkIdType count = from->GetNumberOfTuples();
   const auto more = static_cast<vtkIdType>(parents.size());
@@ -67,6 +67,10 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(
       {
         between = first == 0.0 ? second : first;
       }
+      else if (isWeight && (first == 0.0 || second == 0.0))
+      {
+        between = 0.0;
+      }
       else if (rounds)
       {
         between = components == 1 ? std::min(first, second) : std::floor(between + 0.5);
@@ -79,8 +83,10 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(
 
 /// Arrays that do not have a tuple per point are left out. points: their number.
 void InterpolatePointData(vtkPointData* from, vtkIdType points, vtkPointData* to,
-  const std::vector<std::array<Index, 2>>& parents, const std::string& maskName)
+  const std::vector<std::array<Index, 2>>& parents, const RefinementRules& rules)
 {
+  const auto hasName = [](vtkAbstractArray* array, const std::string& name)
+  { return !name.empty() && array->GetName() && name == array->GetName(); };
   for (int n = 0; n < from->GetNumberOfArrays(); ++n)
   {
     vtkAbstractArray* const array = from->GetAbstractArray(n);
@@ -89,8 +95,8 @@ void InterpolatePointData(vtkPointData* from, vtkIdType points, vtkPointData* to
     {
       continue;
     }
-    const bool isMask = !maskName.empty() && array->GetName() && maskName == array->GetName();
-    const int added = to->AddArray(Interpolate(array, parents, isMask));
+    const int added = to->AddArray(
+      Interpolate(array, parents, hasName(array, rules.Mask), hasName(array, rules.Weights)));
     if (role >= 0)
     {
       to->SetActiveAttribute(added, role);
@@ -185,7 +191,7 @@ void PieceRefinement::Bisect(Piece& piece, vtkPolyData* input, double length,
 }
 
 vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(
-  const Piece& piece, vtkPolyData* input, const std::string& maskName)
+  const Piece& piece, vtkPolyData* input, const RefinementRules& rules)
 {
   auto surface = vtkSmartPointer<vtkPolyData>::New();
   surface->SetPoints(piece.Points);
@@ -194,7 +200,7 @@ vtkSmartPointer<vtkPolyData> PieceRefinement::MakeSurface(
   surface->SetPolys(piece.Triangles);
   surface->GetFieldData()->ShallowCopy(input->GetFieldData());
   InterpolatePointData(input->GetPointData(), input->GetNumberOfPoints(), surface->GetPointData(),
-    piece.Parents, maskName);
+    piece.Parents, rules);
   const vtkIdType others = input->GetNumberOfVerts() + input->GetNumberOfLines();
   const auto ids =
     NewArray<vtkIdTypeArray>(IdsName, 1, others + static_cast<vtkIdType>(piece.CellOf.size()));
@@ -250,7 +256,7 @@ double PieceRefinement::Bisect(const std::vector<SurfacePiece>& pieces, double l
   return longest;
 }
 
-Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces, const std::string& maskName)
+Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces, const RefinementRules& rules)
 {
   Index triangles = 0;
   for (std::size_t p = 0; p < pieces.size(); ++p)
@@ -260,7 +266,7 @@ Index PieceRefinement::Replace(std::vector<SurfacePiece>& pieces, const std::str
     auto surface = vtkSmartPointer<vtkPolyData>::New();
     if (piece.Points)
     {
-      surface = MakeSurface(piece, input, maskName);
+      surface = MakeSurface(piece, input, rules);
       pieces[p].Output->ShallowCopy(surface);
       triangles += static_cast<Index>(piece.CellOf.size());
     }

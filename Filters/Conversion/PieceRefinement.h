@@ -20,6 +20,14 @@ class vtkPolyData;
 namespace SurfaceDiffusion
 {
 
+/// The names of arrays of points that have rules of their own between two points; empty if there is
+/// none.
+struct RefinementRules
+{
+  std::string Mask; ///< what is between a masked point and another one is masked
+  std::string Weights; ///< what is between a point of weight 0 and another one has weight 0
+};
+
 /// Bisects the long edges of the surfaces of an update, see RefineEdges(). Edges that pieces of a
 /// surface share are bisected alike in each, because it depends on the length of the edge alone.
 /// What follows from the points and cells is kept from update to update.
@@ -52,11 +60,10 @@ public:
   /// Replace the inputs of the pieces that were bisected, and make their outputs copies of them.
   /// Mark what was measured in all inputs. Arrays of points are linear along the edges that are
   /// bisected, except that integers of one component, which are labels and marks, become the
-  /// smaller of two, and the mask of this name the one that is not 0: what is between a masked
-  /// point and another one is masked. Triangles have the data of their cells. Global ids, ghost
-  /// cells and hidden cells are left out. Returns the number of triangles of the pieces that were
-  /// replaced.
-  Index Replace(std::vector<SurfacePiece>& pieces, const std::string& maskName);
+  /// smaller of two, and that masks and weights follow the rules. Triangles have the data of their
+  /// cells. Global ids, ghost cells and hidden cells are left out. Returns the number of triangles of
+  /// the pieces that were replaced.
+  Index Replace(std::vector<SurfacePiece>& pieces, const RefinementRules& rules);
 
   /// Make the outputs copies of the inputs that were replaced since Begin().
   void Undo();
@@ -87,7 +94,7 @@ private:
   static void Bisect(Piece& piece, vtkPolyData* input, double length, Index maximumTriangles,
     const ProgressMonitor& progress);
   static vtkSmartPointer<vtkPolyData> MakeSurface(
-    const Piece& piece, vtkPolyData* input, const std::string& maskName);
+    const Piece& piece, vtkPolyData* input, const RefinementRules& rules);
   static void MarkMeasured(const Piece& piece, vtkIdType points, vtkPolyData* surface);
 
   std::vector<Piece> Pieces;

@@ -62,7 +62,7 @@ bool RefineTogether(PieceRefinement& refinement, std::vector<SurfacePiece>& piec
       }
     }
     completed =
-      completed && task.Complete([&] { triangles = refinement.Replace(pieces, task.MaskName); });
+      completed && task.Complete([&] { triangles = refinement.Replace(pieces, task.Rules); });
     triangles = Sum(processes, triangles);
   }
   if (triangles > 0.0 && !reason.Words().empty())

@@ -18,7 +18,7 @@ struct RefinementTask
 {
   bool NeedsMeanEdgeLength = false; ///< for FindLength, which is given 0 otherwise
   int MaximumNumberOfTriangles = 0; ///< of a piece
-  std::string MaskName; ///< of an array of points; empty if there is none
+  RefinementRules Rules;
   /// The length above which edges are bisected; 0: the surfaces stay as they are. It appends to the
   /// explanation what a warning should say of the reason.
   std::function<double(double meanEdgeLength, Sentence& explanation)> FindLength;

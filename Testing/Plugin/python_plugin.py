@@ -243,6 +243,15 @@ def typed_data(kind):
     return data
 
 
+def weightless():
+    """The sphere with weights of 0 and other values there on a part of it."""
+    data = copy_of(dataset(sphere_with_arrays()))
+    outside = vtk_to_numpy(data.GetPoints().GetData())[:, 0] > 0.2
+    vtk_to_numpy(data.GetPointData().GetArray("weight"))[outside] = 0.0
+    vtk_to_numpy(data.GetPointData().GetArray("f"))[outside] += 100.0
+    return producer(data)
+
+
 def run_kinds_of_input():
     for name in filter_names():
         run(name, noisy(sphere_with_arrays()), "noisy")
@@ -259,6 +268,11 @@ def run_kinds_of_input():
             group = simple.GroupDatasets(Input=parts, OutputType=kind)
             group.UpdatePipeline()
             run(name, group, kind)
+    for name in ("FVMHeatFilter", "IntrinsicTVFilter", "MumfordShahFilter", "TensorDiffusionFilter",
+                 "SurfaceSegmentationFilter", "SurfaceInterpolationFilter"):
+        for length in (0.0, 0.12):
+            run(name, weightless(), "weightless %g" % length, FidelityArray=["POINTS", "weight"],
+                RefineTo=length)
     colors = dict(InputArray=["POINTS", "rgba"])
     for name in ("FVMHeatFilter", "IntrinsicTVFilter", "TensorDiffusionFilter", "SurfaceSegmentationFilter"):
         run(name, typed(np.uint8), "colors", **colors)

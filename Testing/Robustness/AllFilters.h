@@ -71,8 +71,15 @@ FilterKind MakeKind(
     result };
 }
 
+/// The weight of a point or cell in "weights" of AddArraysOfAllFilters().
+inline double WeightOf(vtkIdType i)
+{
+  return i % 17 == 5 ? 0.0 : 0.5 + 0.25 * static_cast<double>(i % 4);
+}
+
 /// Adds the arrays other than "f" that some of AllFilters() take: the rough array "c" of cells,
-/// the colours "rgb", the mask "mask", the directions "e1" and the labels "sources" of points.
+/// the colours "rgb", the mask "mask", the directions "e1" and the labels "sources" of points, and the
+/// weights "weights" of both, some of them 0.
 inline void AddArraysOfAllFilters(vtkPolyData* surface)
 {
   surface->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "c", surface->GetNumberOfCells(), 1,
@@ -81,6 +88,10 @@ inline void AddArraysOfAllFilters(vtkPolyData* surface)
     surface, "rgb", 3, [](vtkIdType i, int k) { return 120.0 + 100.0 * Rough(i, k); },
     VTK_UNSIGNED_CHAR);
   AddPointArray(surface, "mask", 1, [](vtkIdType i, int) { return i % 17 == 3; });
+  const auto weight = [](vtkIdType i, int) { return WeightOf(i); };
+  AddPointArray(surface, "weights", 1, weight);
+  surface->GetCellData()->AddArray(
+    MakeArray(VTK_DOUBLE, "weights", surface->GetNumberOfCells(), 1, weight));
   AddPointArray(surface, "e1", 3, [](vtkIdType i, int k) { return k + 0.3 * Rough(i, k); });
   // One of them is a corner of the largest triangle, which takes part.
   vtkIdType largest = 0;
@@ -151,6 +162,13 @@ inline std::vector<FilterKind> AllFilters()
         SetInputArray(f, 1, "mask");
       }),
     MakeKind<Heat>("HeatOfCells", "cDiffused", 3, [](Heat* f) { SetInputArray(f, 0, "c", true); }),
+    MakeKind<Heat>("HeatWeighted", "fDiffused", 1,
+      [](Heat* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetFidelityWeight(0.1);
+        SetInputArray(f, 5, "weights");
+      }),
     MakeKind<Heat>("HeatExponentialOfCells", "cDiffused", 2,
       [](Heat* f)
       {
@@ -192,6 +210,19 @@ inline std::vector<FilterKind> AllFilters()
         f->SetStopTolerance(0.1);
       })),
     MakeKind<TV>("TVOfCells", "cTV", 2, [](TV* f) { SetInputArray(f, 0, "c", true); }),
+    MakeKind<TV>("TVWeighted", "fTV", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        SetInputArray(f, 5, "weights");
+      }),
+    MakeKind<TV>("TVOfWeightedCells", "cTV", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        SetInputArray(f, 0, "c", true);
+        SetInputArray(f, 5, "weights", true);
+      }),
     MakeKind<TV>("TVOpponent", "rgbTV", 2,
       [](TV* f)
       {
@@ -228,6 +259,8 @@ inline std::vector<FilterKind> AllFilters()
       "MumfordShahGiven", "fMumfordShah", 4, [](Shah* f) { f->AutomaticThresholdOff(); }),
     MakeKind<Shah>(
       "MumfordShahOfCells", "cMumfordShah", 4, [](Shah* f) { SetInputArray(f, 0, "c", true); }),
+    MakeKind<Shah>(
+      "MumfordShahWeighted", "fMumfordShah", 4, [](Shah* f) { SetInputArray(f, 5, "weights"); }),
     MakeKind<Shah>("MumfordShahDirect", "fMumfordShah", 3,
       [](Shah* f)
       {
@@ -243,6 +276,12 @@ inline std::vector<FilterKind> AllFilters()
       }),
     MakeKind<Tensor>(
       "BeltramiOfCells", "cBeltrami", 3, [](Tensor* f) { SetInputArray(f, 0, "c", true); }),
+    MakeKind<Tensor>("BeltramiWeighted", "fBeltrami", 3,
+      [](Tensor* f)
+      {
+        f->SetFidelityWeight(0.1);
+        SetInputArray(f, 5, "weights", true);
+      }),
     MakeKind<Tensor>("CoherenceEnhancing", "fCoherent", 2,
       [](Tensor* f)
       {
@@ -281,6 +320,14 @@ inline std::vector<FilterKind> AllFilters()
         f->SetFidelityWeight(50.0);
         f->SetStopTolerance(0.1);
       }),
+    MakeKind<Segmentation>("SegmentationWeighted", "RegionId", 1,
+      [](Segmentation* f)
+      {
+        f->AutomaticFidelityOff();
+        f->SetFidelityWeight(50.0);
+        f->SetStopTolerance(0.1);
+        SetInputArray(f, 5, "weights");
+      }),
     Slow(MakeKind<Segmentation>("SegmentationOfCells", "RegionId", 1,
       [](Segmentation* f)
       {
@@ -302,6 +349,8 @@ inline std::vector<FilterKind> AllFilters()
         f->SetBoundaryToFree();
         f->ExactOn();
       }),
+    Slow(MakeKind<Spline>("InterpolationWeighted", "fInterpolated", 1,
+      [](Spline* f) { SetInputArray(f, 5, "weights"); })),
     Slow(MakeKind<Spline>("InterpolationOfCells", "cInterpolated", 1,
       [](Spline* f) { SetInputArray(f, 0, "c", true); })),
     { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },

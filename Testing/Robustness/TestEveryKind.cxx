@@ -7,6 +7,7 @@
 #include "Twins.h"
 
 #include "vtkAppendPolyData.h"
+#include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
 
 #include <algorithm>
@@ -67,6 +68,13 @@ protected:
   vtkDataArray* Data() const
   {
     return this->Attributes(this->Surface)->GetArray(this->DataName().c_str());
+  }
+  /// Whether the value of a point or cell has weight 0, so that it may be filled in.
+  bool IsWeightless(vtkIdType i) const
+  {
+    const auto filter = this->GetParam().Make();
+    return filter->GetInputArrayInformation(5)->Has(vtkDataObject::FIELD_NAME()) &&
+      WeightOf(i) == 0.0;
   }
   template <typename Value>
   void Add(const char* name, int components, Value&& value, int type = VTK_DOUBLE) const
@@ -281,7 +289,7 @@ TEST_P(EveryKindWithData, KeepsTheBitsOfFixedHeldAndExcludedValues)
       for (int k = 0; k < result->GetNumberOfComponents(); ++k)
       {
         const bool same = result->GetComponent(i, k) == this->Data()->GetComponent(i, k);
-        EXPECT_TRUE(same || IsMarked(i) == held) << name << ' ' << i;
+        EXPECT_TRUE(same || IsMarked(i) == held || this->IsWeightless(i)) << name << ' ' << i;
         changed = changed || !same;
       }
     }
@@ -328,7 +336,17 @@ TEST_P(EveryKindWithTimes, StartsFromTheBitsOfItsData)
   { vtkSurfaceDiffusionAlgorithm::SafeDownCast(f)->SetNumberOfTimeSteps(0); };
   for (vtkDataArray* const given : { this->Data(), this->AddBytes() })
   {
-    EXPECT_TRUE(Identical(this->ResultOf(given->GetName(), "", before), given)) << given->GetName();
+    const auto result = this->ResultOf(given->GetName(), "", before);
+    ASSERT_EQ(result->GetNumberOfTuples(), given->GetNumberOfTuples());
+    for (vtkIdType i = 0; i < given->GetNumberOfTuples(); ++i)
+    {
+      for (int k = 0; k < given->GetNumberOfComponents(); ++k)
+      {
+        EXPECT_TRUE(
+          result->GetComponent(i, k) == given->GetComponent(i, k) || this->IsWeightless(i))
+          << given->GetName() << ' ' << i;
+      }
+    }
   }
 }
 

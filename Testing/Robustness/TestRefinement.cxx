@@ -24,7 +24,8 @@ struct Spheres
   vtkSmartPointer<vtkPolyData> Coarse = Sphere(1);
   vtkNew<vtkPolyData> Fine;
 
-  explicit Spheres(bool hasMask)
+  /// ruled: the index of the array that has a rule of its own, a mask or weights; -1: none.
+  explicit Spheres(int ruled)
   {
     AddRough(this->Coarse);
     AddArraysOfAllFilters(this->Coarse);
@@ -32,9 +33,9 @@ struct Spheres
     vtkNew<vtkSurfaceReliefFilter> relief;
     relief->SetInputData(this->Coarse);
     SetInputArray(relief, 0, "none");
-    if (hasMask)
+    if (ruled >= 0)
     {
-      SetInputArray(relief, 1, "mask"); // what is between a masked point and another one is masked
+      SetInputArray(relief, ruled, ruled == 1 ? "mask" : "weights");
     }
     relief->SetRefineTo(Length);
     relief->Update();
@@ -83,9 +84,10 @@ vtkSmartPointer<vtkPolyData> BoxPart(bool upper)
 TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
 {
   const auto refining = this->GetParam().Make();
-  static const Spheres withoutMask(false), withMask(true);
-  const bool hasMask = refining->GetInputArrayInformation(1)->Has(vtkDataObject::FIELD_NAME());
-  const Spheres& spheres = hasMask ? withMask : withoutMask;
+  static const Spheres plain(-1), withMask(1), withWeights(5);
+  const auto has = [&](int index)
+  { return refining->GetInputArrayInformation(index)->Has(vtkDataObject::FIELD_NAME()) != 0; };
+  const Spheres& spheres = has(1) ? withMask : has(5) ? withWeights : plain;
   const auto given = this->GetParam().Make();
   vtkSurfaceFilter::SafeDownCast(refining)->SetRefineTo(Length);
   refining->SetInputData(spheres.Coarse);
@@ -121,6 +123,48 @@ std::vector<FilterKind> FiltersThatTakeAllValues()
 
 INSTANTIATE_TEST_SUITE_P(
   EveryKind, RefinementOf, testing::ValuesIn(FiltersThatTakeAllValues()), KindName);
+
+TEST(Refinement, PointsBetweenWeightlessOnesAndOthersHaveNoWeight)
+{
+  for (const FilterKind& kind : AllFilters())
+  {
+    const std::string name = kind.Name;
+    if (name != "HeatWeighted" && name != "TVWeighted" && name != "SegmentationWeighted")
+    {
+      continue;
+    }
+    SCOPED_TRACE(name);
+    // A step, and other values or none where points have no weight.
+    std::vector<vtkSmartPointer<vtkPolyDataAlgorithm>> filters;
+    for (const double other : { 1e3, std::nan("") })
+    {
+      const auto sphere = Sphere(2);
+      AddPointArray(sphere, "weights", 1,
+        [&](vtkIdType i, int) { return sphere->GetPoint(i)[0] > 0.4 ? 0.0 : 1.0; });
+      AddPointArray(sphere, "f", 1,
+        [&](vtkIdType i, int)
+        {
+          const double* const p = sphere->GetPoint(i);
+          return p[0] > 0.4 ? other : p[2] > 0.1 ? 1.0 : 0.0;
+        });
+      sphere->GetPointData()->SetActiveScalars("f");
+      filters.push_back(kind.Make());
+      filters.back()->SetInputData(sphere);
+      vtkSurfaceFilter::SafeDownCast(filters.back())->SetRefineTo(0.15);
+      Messages messages(filters.back());
+      filters.back()->Update();
+      EXPECT_EQ(messages.Errors, std::vector<std::string>());
+    }
+    vtkDataArray* const ofValues = ResultOf(filters[0], kind.Result);
+    vtkDataArray* const ofNone = ResultOf(filters[1], kind.Result);
+    ASSERT_TRUE(ofValues && ofNone);
+    ASSERT_GT(ofValues->GetNumberOfTuples(), 500);
+    for (vtkIdType i = 0; i < ofValues->GetNumberOfTuples(); ++i)
+    {
+      ASSERT_EQ(ofValues->GetComponent(i, 0), ofNone->GetComponent(i, 0)) << i;
+    }
+  }
+}
 
 namespace
 {

@@ -36,12 +36,15 @@ const std::map<std::string, int> LargestNumbers = {
   // nothing is strictly convex.
   { "TVImplicit", 90 },
   { "TVSteady", 100 },
+  { "TVWeighted", 120 },
+  { "TVOfWeightedCells", 120 },
   { "TVAutomatic", 30 },
   { "TVAbsolute", 600 },
   { "TVDeblurred", 12 },
   { "TVDeblurredFound", 4 },
   { "Segmentation", 50 },
   { "SegmentationOfThree", 30 },
+  { "SegmentationWeighted", 50 },
   // On noise alone, as here, it is chance: 155 to 1,330 iterations in eighteen other runs.
   { "SegmentationDefaults", 2700 },
   { "SegmentationOfCells", 7500 },
@@ -54,10 +57,12 @@ const std::map<std::string, int> LargestNumbers = {
   // One solve for u and one for v.
   { "MumfordShah", 60 },
   { "MumfordShahOfCells", 60 },
+  { "MumfordShahWeighted", 120 }, // solved to 1e-3, as with missing values
   { "MumfordShahGiven", 16 },
   // One solve of an anisotropy of b^2 |grad u|^2, with a large time step in the second.
   { "Beltrami", 20 },
   { "BeltramiOfCells", 20 },
+  { "BeltramiWeighted", 20 },
   { "BeltramiFixed", 100 },
   // The solves on the coarse space, which has few unknowns.
   { "TuringCoarseStart", 12 },

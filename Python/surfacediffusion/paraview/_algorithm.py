@@ -323,8 +323,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         limit = self.own["MaximumNumberOfTriangles"]
         if not length > 0.0:
             return
-        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others,
-                          self.choices[1].name if 1 in self.choices else None)
+        mask, weights = (self.choices[k].name if k in self.choices else None for k in (1, 5))
+        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others, mask, weights)
         if refinement.longest > 0.0:
             self._of_surfaces.append(
                 f"refinement stopped at edges of {refinement.longest:g}, longer than {length:g}, because "

@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkDataArray, vtkIdTypeArray, vt
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
 from .. import _core
-from .._refinement import edge_lengths, interpolate_points
+from .._refinement import edge_lengths, interpolate_points, interpolate_weights
 from ._results import copy_component_names, make_array
 from ._surfaces import BETWEEN, GIVEN_CELL, Block, Shapes, to_numpy
 
@@ -45,10 +45,11 @@ class Refinement:
 
     def bisect(
         self, blocks: list[Block], length: float, limit: int, progress: Callable[[float], Any],
-        others: list[Block], mask: str | None,
+        others: list[Block], mask: str | None, weights: str | None,
     ) -> None:
         """Bisect the edges that are longer, until a block would have more triangles than the limit. others:
-        blocks without polygons, which are pieces of surfaces, too. mask: the name of the mask of points."""
+        blocks without polygons, which are pieces of surfaces, too. mask, weights: the names of
+        these arrays of points."""
         found = self._bisect_all(blocks, length, limit, progress)
         self.longest = max([refined["longest_edge"] for refined in found if refined["limit_reached"]],
                            default=0.0)
@@ -59,7 +60,7 @@ class Refinement:
             before = block.input
             self._before.append((block, before))
             if refined is not None and len(refined["parents"]):
-                block.input = _make_surface(before, refined, mask)
+                block.input = _make_surface(before, refined, mask, weights)
                 self.triangles += len(refined["triangles"])
                 block.output.ShallowCopy(block.input)
                 given = to_numpy(block.input.GetCellData().GetArray("vtkOriginalCellIds"))
@@ -92,7 +93,14 @@ class Refinement:
             block.output.ShallowCopy(before)
 
 
-def _make_surface(given: Any, refined: dict[str, Any], mask: str | None) -> Any:
+def _make_surface(given: Any, refined: dict[str, Any], mask: str | None, weights: str | None) -> Any:
+    parents = refined["parents"]
+
+    def interpolate(values: NDArray[Any], name: str | None) -> NDArray[Any]:
+        if name is not None and name == weights:
+            return interpolate_weights(values, parents)
+        return interpolate_points(values, parents, mask=name is not None and name == mask)
+
     surface = vtkPolyData()
     single = given.GetPoints().GetDataType() == VTK_FLOAT
     points = vtkPoints()
@@ -105,10 +113,8 @@ def _make_surface(given: Any, refined: dict[str, Any], mask: str | None) -> Any:
     polygons.SetData(make_array("", 3 * np.arange(len(triangles) + 1)), make_array("", triangles.ravel()))
     surface.SetPolys(polygons)
     surface.GetFieldData().ShallowCopy(given.GetFieldData())
-    parents = refined["parents"]
     _copy_arrays(given.GetPointData(), surface.GetPointData(), given.GetNumberOfPoints(),
-                 lambda values, name: interpolate_points(values, parents, mask=bool(mask) and name == mask),
-                 parents.min(axis=1))
+                 interpolate, parents.min(axis=1))
     others = given.GetNumberOfVerts() + given.GetNumberOfLines()
     ids = np.concatenate([np.arange(others), refined["faces"].ravel()]).astype(np.int64)
     _copy_arrays(given.GetCellData(), surface.GetCellData(), given.GetNumberOfCells(),
@@ -118,7 +124,7 @@ def _make_surface(given: Any, refined: dict[str, Any], mask: str | None) -> Any:
 
 
 def _copy_arrays(
-    given: Any, made: Any, count: int, make: Callable[[NDArray[Any], str], NDArray[Any]],
+    given: Any, made: Any, count: int, make: Callable[[NDArray[Any], str | None], NDArray[Any]],
     rows: NDArray[Any]
 ) -> None:
     """Add the arrays of `given` with a tuple for each of `count` points or cells, but global ids, and keep
