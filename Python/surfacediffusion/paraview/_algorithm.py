@@ -6,7 +6,7 @@ and warnings. It is the update of vtkSurfaceFilter, in one process."""
 from __future__ import annotations
 
 import functools
-from typing import Any, Callable
+from typing import Any, Callable, Iterable
 
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkCommand, vtkOutputWindow
@@ -15,7 +15,7 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
-from ._fields import ArrayFinder, Choice, Fields, join_sentences, make_core
+from ._fields import BY_INDEX, ArrayFinder, Choice, Fields, join_sentences, make_core
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement, mean_edge_length
 from ._surfaces import ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure
@@ -63,10 +63,13 @@ def _has_polygons(block: Block) -> bool:
 class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     """A filter on surfaces, whose model is that of a function of this package."""
 
+    # From the proxy:
     MODEL = ""
-    OUTPUTS: tuple[str, ...] = ("vtkDataObject",)
-    HAS_POINT_INPUT = False
+    ARRAYS: dict[int, tuple[str, int]] = {}  #: index: property, number of components
+    OUTPUTS: tuple[str, ...] = ("vtkDataObject", "vtkTable", "vtkPolyData")  #: as many as it has
     RESULT_NAME = ""
+
+    HAS_POINT_INPUT = False
     DEFAULT_CHOICE: Choice | None = None
 
     def __init__(self) -> None:
@@ -255,7 +258,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         """Find the arrays of a block. Return False if it takes no part."""
-        raise NotImplementedError
+        self.find_arrays(block, fields, sorted(self.ARRAYS))
+        return fields.data.values is not None or 0 not in self.ARRAYS
 
     def run(
         self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
@@ -337,8 +341,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         """Return the blocks that take part, with their arrays. Append problems."""
         raise NotImplementedError
 
-    def find_arrays(self, block: Block, fields: Fields) -> ArrayFinder:
-        return ArrayFinder(self.choices, block.input, fields)
+    def find_arrays(self, block: Block, fields: Fields, indices: Iterable[int]) -> None:
+        arrays = ArrayFinder(self.choices, block.input, fields)
+        for index in indices:
+            setattr(fields, BY_INDEX[index], arrays.find(index, *self.ARRAYS[index]))
 
     def check(self, found: list[tuple[Block, Fields]], problems: list[str]) -> None:
         """Append the problems of the settings with the arrays of each block."""

@@ -16,6 +16,9 @@ from .. import _core
 from .._surface import data_components
 from ._surfaces import BETWEEN, GIVEN_CELL, Block, SurfaceError, hidden_points, to_numpy
 
+#: The attribute of Fields that has the array of an index; 7 has terms of data in place of data.
+BY_INDEX = ("data", "mask", "direction", "fixed", "rates", "fidelity", "seeds", "data", "speeds",
+            "start_times")
 POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
 ANY = 0  #: number of components
 _LINES = (3, 4)  #: types of cells: line, polyline

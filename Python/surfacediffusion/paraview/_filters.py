@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The filters: which arrays each reads, and how runs with and without time steps are computed."""
+"""The filters: how runs with and without time steps are computed, and what filters do that their proxies
+do not say."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ from .. import _core
 from .._refinement import texture_length
 from ._algorithm import SurfaceFilter, list_settings, spell
 from ._fields import (
-    ANY, CELLS, POINTS, POINTS_THEN_CELLS, Choice, Fields, join_sentences, read_samples, read_sources,
+    CELLS, POINTS, POINTS_THEN_CELLS, Choice, Fields, join_sentences, read_samples, read_sources,
     settle_absence,
 )
 from ._normals import compute_point_normals
@@ -96,7 +97,6 @@ def _turn_polygons(surface: Any, cells: list[int]) -> None:
 class ModelFilter(SurfaceFilter):
     """A filter of a model of arrays, which may have time steps."""
 
-    OUTPUTS: tuple[str, ...] = ("vtkDataObject", "vtkTable")
     DEFAULT_CHOICE = _SCALARS
 
     def __init__(self) -> None:
@@ -107,14 +107,6 @@ class ModelFilter(SurfaceFilter):
     def ReleaseCache(self) -> None:
         SurfaceFilter.ReleaseCache(self)
         self._run.clear()
-
-    def find_fields(self, block: Block, fields: Fields) -> bool:
-        arrays = self.find_arrays(block, fields)
-        fields.data = arrays.find(0, "InputArray", ANY)
-        fields.mask = arrays.find(1, "MaskArray", 1)
-        fields.direction = arrays.find(2, "DirectionArray", 3)
-        fields.fixed = arrays.find(3, "FixedArray", 1)
-        return fields.data.values is not None
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
         """Blocks without data pass through if at least one block has data."""
@@ -267,34 +259,7 @@ class ModelFilter(SurfaceFilter):
         return int(step)
 
 
-class DataFilter(ModelFilter):
-    """A model of given data, with fidelity factors."""
-
-    def find_fields(self, block: Block, fields: Fields) -> bool:
-        found = ModelFilter.find_fields(self, block, fields)
-        fields.fidelity = self.find_arrays(block, fields).find(5, "FidelityArray", 1)
-        return found
-
-
-class Heat(DataFilter):
-    MODEL = "heat"
-
-
-class TotalVariation(DataFilter):
-    MODEL = "intrinsic_tv"
-
-
-class MumfordShah(DataFilter):
-    MODEL = "mumford_shah"
-    OUTPUTS = ("vtkDataObject", "vtkTable", "vtkPolyData")
-
-
-class TensorDiffusion(DataFilter):
-    MODEL = "tensor_diffusion"
-
-
-class HarmonicMap(DataFilter):
-    MODEL = "harmonic_map"
+class HarmonicMap(ModelFilter):
     DEFAULT_CHOICE = Choice(POINTS, None, vtkDataSetAttributes.NORMALS)
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
@@ -310,7 +275,7 @@ class HarmonicMap(DataFilter):
                 normals = compute_point_normals(given)
             with_normals.GetPointData().SetNormals(normals)
             with_normals.GetPointData().SetScalars(normals)  # an empty name means these
-        if not DataFilter.find_fields(self, Block(with_normals, None), fields):
+        if not ModelFilter.find_fields(self, Block(with_normals, None), fields):
             return False
         data = fields.data.values
         is_normals = fields.data_are_computed or data is given.GetPointData().GetNormals() or (
@@ -324,7 +289,6 @@ class HarmonicMap(DataFilter):
 
 
 class Texture(ModelFilter):
-    MODEL = "turing_texture"
     DEFAULT_CHOICE = Choice(POINTS, "")
 
     def __init__(self) -> None:
@@ -350,13 +314,7 @@ class Texture(ModelFilter):
                         "edges, set RefineTo to 0)" if length > 0.0 else "")
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        arrays = self.find_arrays(block, fields)
-        if self.choices[0].is_set:
-            fields.data = arrays.find(0, "InputArray", 2)
-        fields.mask = arrays.find(1, "MaskArray", 1)
-        fields.direction = arrays.find(2, "DirectionArray", 3)
-        fields.fixed = arrays.find(3, "FixedArray", 1)
-        fields.rates = arrays.find(4, "DiffusionRateArray", 4)
+        self.find_arrays(block, fields, range(0 if self.choices[0].is_set else 1, 5))
         if fields.rates.values is not None and not fields.rates.on_cells:
             fields.problems.append(
                 "DiffusionRateArray is a point array; allowed: arrays of 4 components per cell")
@@ -364,9 +322,6 @@ class Texture(ModelFilter):
 
 
 class Segmentation(ModelFilter):
-    MODEL = "segment"
-    OUTPUTS = ("vtkDataObject", "vtkTable", "vtkPolyData")
-
     def __init__(self) -> None:
         ModelFilter.__init__(self)
         self._means: dict[tuple[int, int], float] = {}
@@ -384,14 +339,10 @@ class Segmentation(ModelFilter):
         self.Modified()
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        arrays = self.find_arrays(block, fields)
-        fields.data = arrays.find(7, "DataTermArray", ANY)
+        self.find_arrays(block, fields, [7])
         fields.data_are_terms = fields.data.values is not None
-        if not fields.data_are_terms and not fields.problems and not fields.absent:
-            fields.data = arrays.find(0, "InputArray", ANY)
-        fields.mask = arrays.find(1, "MaskArray", 1)
-        fields.fidelity = arrays.find(5, "FidelityArray", 1)
-        fields.seeds = arrays.find(6, "SeedArray", 1)
+        has_terms = fields.data_are_terms or fields.problems or fields.absent
+        self.find_arrays(block, fields, [1, 5, 6] if has_terms else [0, 1, 5, 6])
         data = fields.data.values
         if data is not None and not fields.data_are_terms and not self.settings.get("AutomaticMeans", True):
             self._check_means(data, fields.problems)
@@ -410,83 +361,47 @@ class Segmentation(ModelFilter):
 
 
 class Interpolation(ModelFilter):
-    MODEL = "interpolate"
     HAS_POINT_INPUT = True
 
     def read_points(self, data: Any) -> tuple[Any, list[str]]:
         return read_samples(data, self.own["PointValueArray"], self.own["PointWeightArray"])
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        arrays = self.find_arrays(block, fields)
         fields.samples = self.points
         fields.problems += self.problems_of_points
-        if not self.has_points:
-            fields.data = arrays.find(0, "InputArray", ANY)
-            fields.fidelity = arrays.find(5, "FidelityArray", 1)
-        fields.mask = arrays.find(1, "MaskArray", 1)
-        fields.direction = arrays.find(2, "DirectionArray", 3)
+        self.find_arrays(block, fields, [1, 2] if self.has_points else [0, 5, 1, 2])
         return fields.data.values is not None or fields.samples is not None
 
 
-class Curvature(RunFilter):
-    MODEL = "curvature"
-
-    def find_fields(self, block: Block, fields: Fields) -> bool:
-        fields.mask = self.find_arrays(block, fields).find(1, "MaskArray", 1)
-        return True
-
-
-class Denoising(RunFilter):
-    MODEL = "denoise_mesh"
-    RESULT_NAME = "Displacement"
-
-    def find_fields(self, block: Block, fields: Fields) -> bool:
-        fields.fixed = self.find_arrays(block, fields).find(3, "FixedArray", 1)
-        return True
-
-
 class Derivatives(RunFilter):
-    MODEL = "derivatives"
     DEFAULT_CHOICE = _SCALARS
     NAMED_AFTER = "data"
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        arrays = self.find_arrays(block, fields)
         fields.alpha_is_data = True
-        fields.data = arrays.find(0, "InputArray", ANY)
-        fields.mask = arrays.find(1, "MaskArray", 1)
-        return fields.data.values is not None
+        return RunFilter.find_fields(self, block, fields)
 
 
 class DirectionField(RunFilter):
-    MODEL = "direction_field"
-    RESULT_NAME = "Direction"
     NAMED_AFTER = "direction"
     _HINTS = 3  #: of Method
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         if self.settings.get("Method", 0) == self._HINTS:
-            fields.direction = self.find_arrays(block, fields).find(2, "DirectionArray", 3)
+            self.find_arrays(block, fields, [2])
         return True  # without hints, which is an error if they are needed
 
 
 class Distance(RunFilter):
-    MODEL = "distance"
     HAS_POINT_INPUT = True
 
     def read_points(self, data: Any) -> tuple[Any, list[str]]:
         return read_sources(data)
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        arrays = self.find_arrays(block, fields)
         fields.problems += self.problems_of_points
         fields.sources = self.points
-        if not self.has_points:
-            fields.data = arrays.find(0, "SourceArray", 1)
-            fields.start_times = arrays.find(9, "SourceTimes", 1)
-        fields.mask = arrays.find(1, "MaskArray", 1)
-        fields.direction = arrays.find(2, "DirectionArray", 3)
-        fields.speeds = arrays.find(8, "SpeedArray", 1)
+        self.find_arrays(block, fields, [1, 2, 8] if self.has_points else [0, 9, 1, 2, 8])
         for array, name in ((fields.data, "SourceArray"), (fields.start_times, "SourceTimes")):
             if array.on_cells:
                 fields.problems.append(f"{name} is a cell array; allowed: point arrays of 1 component")
@@ -494,36 +409,27 @@ class Distance(RunFilter):
 
 
 class RandomField(RunFilter):
-    MODEL = "random_field"
-
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        fields.mask = self.find_arrays(block, fields).find(1, "MaskArray", 1)
         fields.global_ids = block.input.GetPointData().GetGlobalIds()
-        return True
+        return RunFilter.find_fields(self, block, fields)
 
 
 class Relief(RunFilter):
-    MODEL = "relief"
-    RESULT_NAME = "ReliefHeight"
     DEFAULT_CHOICE = Choice(POINTS, "Texture")
     NAMED_AFTER = "data"
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
-        arrays = self.find_arrays(block, fields)
-        fields.data = arrays.find(0, "InputArray", 1)
+        found = RunFilter.find_fields(self, block, fields)
         if fields.data.on_cells:
             fields.problems.append("InputArray is a cell array; allowed: point arrays of 1 component")
-        fields.mask = arrays.find(1, "MaskArray", 1)
-        return fields.data.values is not None
+        return found
 
 
-#: The class of each proxy.
+#: The classes of proxies that need more than RunFilter or ModelFilter.
 CLASSES: dict[str, type[SurfaceFilter]] = {
-    "FVMHeatFilter": Heat, "HarmonicMapFilter": HarmonicMap, "IntrinsicTVFilter": TotalVariation,
-    "MumfordShahFilter": MumfordShah, "SurfaceCurvatureFilter": Curvature,
-    "SurfaceDenoisingFilter": Denoising, "SurfaceDerivativesFilter": Derivatives,
+    "HarmonicMapFilter": HarmonicMap, "SurfaceDerivativesFilter": Derivatives,
     "SurfaceDirectionFieldFilter": DirectionField, "SurfaceDistanceFilter": Distance,
     "SurfaceInterpolationFilter": Interpolation, "SurfaceRandomFieldFilter": RandomField,
     "SurfaceReliefFilter": Relief, "SurfaceSegmentationFilter": Segmentation,
-    "TensorDiffusionFilter": TensorDiffusion, "TuringTextureFilter": Texture,
+    "TuringTextureFilter": Texture,
 }

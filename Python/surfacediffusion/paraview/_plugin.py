@@ -13,7 +13,9 @@ from typing import Any, Callable
 
 from paraview.modules.vtkRemotingCore import vtkPVPluginTracker  # type: ignore[import-not-found]
 
-from ._filters import CLASSES
+from ._algorithm import SurfaceFilter
+from ._fields import ANY
+from ._filters import CLASSES, ModelFilter, RunFilter
 
 _PROXIES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "proxies")
 _SHARED = "SurfaceDiffusionAlgorithm.xml"  #: the properties that filters inherit
@@ -33,15 +35,17 @@ def define_filters(module: str) -> dict[str, Any]:
         print("SurfaceDiffusionPython: the plugin SurfaceDiffusion is loaded, whose filters stay.")
         return {}
     shared = _read(_SHARED)
-    properties = {
-        proxy.get("name"): proxy for proxy in ElementTree.fromstring(shared).iter("SourceProxy")}
+    bases = {proxy.get("name"): proxy for proxy in ElementTree.fromstring(shared).iter("SourceProxy")}
     objects: dict[str, Any] = {"_SharedProperties": _Definition(shared)}
     for path in sorted(glob.glob(os.path.join(_PROXIES, "*Filter.xml"))):
         xml = _read(os.path.basename(path))
         (proxy,) = ElementTree.fromstring(xml).iter("SourceProxy")
         name, old = proxy.get("name", ""), proxy.get("class", "")
         xml = xml.replace(f'class="{old}"', f'class="{module}.{old}" si_class="vtkSIPythonSourceProxy"')
-        made = type(old, (CLASSES[name],), {"__module__": module, **_methods(proxy, properties)})
+        usual = RunFilter if proxy.get("base_proxyname") == "SurfaceFilter" else ModelFilter
+        properties = _properties(proxy, bases)
+        made = type(old, (CLASSES.get(name, usual),), {
+            "__module__": module, **_constants(proxy, properties), **_methods(properties)})
         made._pvsm_proxy_xml = xml  # type: ignore[attr-defined]
         objects[old] = made
         objects[f"_{name}ByClass"] = _Definition(_by_class(name, xml))
@@ -67,11 +71,30 @@ def _by_class(name: str, xml: str) -> str:
     return re.sub("<ShowInMenu[^>]*>", "<ReaderFactory/>", xml)
 
 
-def _methods(proxy: Any, shared: dict[str | None, Any]) -> dict[str, Callable[..., Any]]:
-    """The methods that the properties of a proxy call, inherited ones first."""
-    base = shared.get(proxy.get("base_proxyname"))
-    methods = {} if base is None else _methods(base, shared)
-    for element in proxy:
+def _properties(proxy: Any, bases: dict[str | None, Any]) -> dict[str, Any]:
+    """The properties of a proxy, inherited ones first, by name."""
+    base = bases.get(proxy.get("base_proxyname"))
+    properties = {} if base is None else _properties(base, bases)
+    return {**properties, **{each.get("name"): each for each in proxy if each.tag.endswith("Property")}}
+
+
+def _constants(proxy: Any, properties: dict[str, Any]) -> dict[str, Any]:
+    """What a class has from its proxy beside the methods."""
+    counts = {domain.get("name"): domain.get("number_of_components", "") for domain in properties["Input"]}
+    arrays = {}
+    for name, element in properties.items():
+        if element.get("command") == "SetInputArrayToProcess":
+            count = counts[element.find("ArrayListDomain").get("input_domain_name")]
+            arrays[int(element.get("default_values", 0))] = (name, int(count) if count.isdigit() else ANY)
+    return {"MODEL": proxy.find("Hints/SurfaceDiffusion").get("function"), "ARRAYS": arrays,
+            "OUTPUTS": SurfaceFilter.OUTPUTS[:len(proxy.findall("OutputPort"))],
+            "RESULT_NAME": properties["ResultArrayName"].get("default_values")}
+
+
+def _methods(properties: dict[str, Any]) -> dict[str, Callable[..., Any]]:
+    """The methods that properties call."""
+    methods = {}
+    for element in properties.values():
         command = element.get("command", "")
         if element.get("information_only") == "1" and command.startswith("Get"):
             methods[command] = _getter(command[3:], element.tag != "DoubleVectorProperty")
