@@ -27,11 +27,6 @@ INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "h
          "rates": 4, "fidelity": 5, "seeds": 6, "terms": 7, "marked": 0, "speed": 8}
 
 
-#: The classes of functions whose keywords are not made from the settings
-OTHERS = {"distance": "vtkSurfaceDistanceFilter", "random_field": "vtkSurfaceRandomFieldFilter",
-          "relief": "vtkSurfaceReliefFilter"}
-
-
 def rough_sphere():
     """A sphere with noise, a hole, and quadrilaterals beside triangles."""
     random = np.random.default_rng(1)
@@ -176,8 +171,7 @@ class SameBits(unittest.TestCase):
             for number, (function, arrays, properties) in enumerate(cases):
                 np.savez(folder / f"case{number}.npz", points=self.points, faces=flat, sizes=sizes,
                          **arrays)
-                listed.append([{**CLASSES, **OTHERS}[function], properties,
-                               {key: INDEX[key] for key in arrays}])
+                listed.append([CLASSES[function], properties, {key: INDEX[key] for key in arrays}])
             (folder / "cases.json").write_text(json.dumps(listed))
             environment = dict(os.environ, PYTHONPATH=os.environ["SURFACEDIFFUSION_VTK_PATH"])
             script = pathlib.Path(__file__).with_name("run_filters.py")

@@ -5,12 +5,9 @@ of keywords is made, too. Sentences about ParaView may follow."""
 
 import unittest
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 
-from filter_classes import CLASSES
+from filter_classes import CLASSES, PLUGIN
 from surfacediffusion import _core
-
-PLUGIN = Path(__file__).resolve().parents[2] / "Plugin"
 
 PROXIES = {function: name[len("vtk"):] for function, name in CLASSES.items()}
 

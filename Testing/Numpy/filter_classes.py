@@ -1,22 +1,15 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The classes for VTK of the functions of arrays."""
+"""The classes for VTK of the functions of arrays, as the proxies of ParaView have them."""
+
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 import surfacediffusion
 
+PLUGIN = Path(__file__).resolve().parents[2] / "Plugin"
 CLASSES = {
-    "curvature": "vtkSurfaceCurvatureFilter",
-    "denoise_mesh": "vtkSurfaceDenoisingFilter",
-    "derivatives": "vtkSurfaceDerivativesFilter",
-    "direction_field": "vtkSurfaceDirectionFieldFilter",
-    "harmonic_map": "vtkHarmonicMapFilter",
-    "heat": "vtkFVMHeatFilter",
-    "intrinsic_tv": "vtkIntrinsicTVFilter",
-    "mumford_shah": "vtkMumfordShahFilter",
-    "interpolate": "vtkSurfaceInterpolationFilter",
-    "segment": "vtkSurfaceSegmentationFilter",
-    "tensor_diffusion": "vtkTensorDiffusionFilter",
-    "turing_texture": "vtkTuringTextureFilter",
-}
-_MISSING = set(surfacediffusion._functions.__all__) ^ set(CLASSES)
-assert not _MISSING, f"functions and classes differ: {sorted(_MISSING)}"
+    proxy.find("Hints/SurfaceDiffusion").get("function"): proxy.get("class")
+    for path in PLUGIN.glob("*Filter.xml") for proxy in ElementTree.parse(path).iter("SourceProxy")}
+_MISSING = set(surfacediffusion._functions.__all__) - set(CLASSES)
+assert not _MISSING, f"functions have no class: {sorted(_MISSING)}"
