@@ -108,7 +108,7 @@ Vector SumsAround(const CellTransfer& transfer, const Vector& weights)
 /// CellTransfer::ToVertices() of values or of lines.
 VertexMeans Average(const CellState& cells, const Values& ofCells, const Vector& weights)
 {
-  if (!cells.Reading.Lines)
+  if (!cells.Model.StateIsLines)
   {
     return cells.Transfer.ToVertices(ofCells, weights);
   }
@@ -132,9 +132,9 @@ struct CellData
   bool HasUnknown = false; ///< a cell that takes part
 };
 
-CellData ReadCells(const Surface& surface, const Fields& fields, const CellReading& reading)
+CellData ReadCells(const Surface& surface, const Fields& fields, const CellState& cells)
 {
-  CellData data{ fields.Data.Values / reading.Unit, Vector::Zero(fields.NumberOfCells),
+  CellData data{ fields.Data.Values / cells.Unit, Vector::Zero(fields.NumberOfCells),
     Vector::Zero(fields.NumberOfCells) };
   const std::vector<char> participates = FindParticipatingRows(surface, fields);
   for (Index c = 0; c < static_cast<Index>(fields.Data.Values.rows()); ++c)
@@ -148,16 +148,16 @@ CellData ReadCells(const Surface& surface, const Fields& fields, const CellReadi
       throw ErrorAt(fields.DataName, "is infinite", true, c, "allowed: finite values and NaN");
     }
     const bool finite = !IsSet(fields.Missing, c) && !fields.Data.Values.row(c).hasNaN() &&
-      (!reading.UnitVectors || Normalize(data.Of.row(c)));
+      (!cells.Model.StateIsUnitVectors || Normalize(data.Of.row(c)));
     const bool isFixed = fields.Fixed.OnCells && IsSet(fields.Fixed.Values, c);
     if (isFixed && !finite)
     {
       throw ErrorAt(fields.DataName,
-        Sentence(reading.UnitVectors ? "has no direction" : "is NaN")
+        Sentence(cells.Model.StateIsUnitVectors ? "has no direction" : "is NaN")
           << " where " << Word::Array("FixedArray") << " holds it",
         true, c, "allowed there: finite values");
     }
-    const bool known = finite && (isFixed || !fields.IsLeftOut(c, reading.Inpaint));
+    const bool known = finite && (isFixed || !fields.IsLeftOut(c, cells.Inpaint));
     data.HasUnknown = data.HasUnknown || !known;
     data.Known[c] = known ? 1.0 : 0.0;
     data.Damaged[c] = finite && !known ? 1.0 : 0.0;
@@ -188,7 +188,7 @@ void WeightFidelity(const Surface& surface, const Fields& fields, CellState& cel
   cells.Factors = weights.cwiseProduct(Vector(cells.Transfer.ToCells(ofVertices).col(0)));
   for (Eigen::Index v = 0; v < weighted.Of.rows(); ++v)
   {
-    if (cells.Reading.UsesFidelity && weighted.Weights[v] > 0.0)
+    if (cells.Model.UsesFidelity && weighted.Weights[v] > 0.0)
     {
       data.Given.row(v) = weighted.Of.row(v);
     }
@@ -341,7 +341,7 @@ PointData MakePointDataOfCells(
   const Surface& surface, const Fields& fields, CellState& cells, const Reduction& processes)
 {
   CellData given;
-  RunCollectively(processes, [&] { given = ReadCells(surface, fields, cells.Reading); });
+  RunCollectively(processes, [&] { given = ReadCells(surface, fields, cells); });
   double components = static_cast<double>(given.Of.cols());
   surface.InputMesh().GetReduction().Max(&components, 1);
   given.Of.conservativeResize(given.Of.rows(), static_cast<Eigen::Index>(components));
@@ -360,7 +360,7 @@ PointData MakePointDataOfCells(
     }
   }
   cells.Factors = given.Known;
-  const bool hasUnknown = cells.Reading.UsesFidelity && given.HasUnknown;
+  const bool hasUnknown = cells.Model.UsesFidelity && given.HasUnknown;
   if (processes.Any(hasUnknown || !fields.FidelityFactors.Values.empty()))
   {
     WeightFidelity(surface, fields, cells, given, processes, data);
@@ -372,7 +372,7 @@ PointData MakePointDataOfCells(
   for (std::size_t c = 0; c < cells.Known.size(); ++c)
   {
     cells.Known[c] = given.Known[static_cast<Index>(c)] > 0.0;
-    cells.Held[c] |= static_cast<char>(cells.Reading.HoldsKnown && cells.Known[c] != 0);
+    cells.Held[c] |= static_cast<char>(cells.Model.HoldsKnownValues && cells.Known[c] != 0);
   }
   return data;
 }

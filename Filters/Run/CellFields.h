@@ -31,30 +31,21 @@ void MoveMarksToData(
 /// depend on them, and no unit or estimate may.
 void MarkWeightless(const Surface& surface, Fields& fields);
 
-/// How a model reads data on cells.
-struct CellReading
-{
-  bool Inpaint = true; ///< a mask means missing
-  bool UsesFidelity = false;
-  bool UnitVectors = false; ///< each vector is normalised first
-  bool Lines = false; ///< unit vectors u and -u are the same
-  bool HoldsKnown = false; ///< known cells keep their value
-  double Unit = 1.0; ///< by which values are divided
-};
-
 /// The data of a run that were given on cells.
 struct CellState
 {
   CellTransfer Transfer;
-  std::vector<char> Known; ///< per cell
+  ModelTraits Model; ///< that reads the data
+  bool Inpaint = true; ///< a mask means missing
+  double Unit = 1.0; ///< by which values are divided
+  std::vector<char> Known = {}; ///< per cell
   bool HasUnknown = false; ///< among the cells that take part
-  Values Start; ///< u_0, the initial state at the vertices
-  CellReading Reading;
-  std::vector<Index> Seeds; ///< per cell, as in Fields; empty if seeds are not on cells
-  Vector Factors; ///< of the fidelity, per cell; 0 where missing
-  std::vector<char> Held; ///< per cell: a fixed one, or one whose vertices are all fixed
-  std::shared_ptr<const CellDetail> Detail; ///< null if the result needs none
-  std::vector<char> Undetermined; ///< per cell, empty if none is; see there
+  Values Start = {}; ///< u_0, the initial state at the vertices
+  std::vector<Index> Seeds = {}; ///< per cell, as in Fields; empty if seeds are not on cells
+  Vector Factors = {}; ///< of the fidelity, per cell; 0 where missing
+  std::vector<char> Held = {}; ///< per cell: a fixed one, or one whose vertices are all fixed
+  std::shared_ptr<const CellDetail> Detail = nullptr; ///< null if the result needs none
+  std::vector<char> Undetermined = {}; ///< per cell, empty if none is; see there
 
   bool IsUndetermined(Index cell) const
   {

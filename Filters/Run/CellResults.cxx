@@ -39,8 +39,8 @@ constexpr double L1Rounding = 1e-3;
 /// d_0.
 Values FirstDetail(const Fields& fields, const CellState& cells)
 {
-  const CellReading& reading = cells.Reading;
-  Values detail = -cells.Transfer.ToCells(reading.Lines ? AsTensors(cells.Start) : cells.Start);
+  Values detail =
+    -cells.Transfer.ToCells(cells.Model.StateIsLines ? AsTensors(cells.Start) : cells.Start);
   for (Index c = 0; c < cells.Transfer.NumberOfCells(); ++c)
   {
     if (cells.Known[static_cast<std::size_t>(c)] == 0)
@@ -48,12 +48,12 @@ Values FirstDetail(const Fields& fields, const CellState& cells)
       detail.row(c).setZero();
       continue;
     }
-    Values given = fields.Data.Values.row(c) / reading.Unit;
-    if (reading.UnitVectors)
+    Values given = fields.Data.Values.row(c) / cells.Unit;
+    if (cells.Model.StateIsUnitVectors)
     {
       Normalize(given.row(0));
     }
-    detail.row(c) += reading.Lines ? AsTensors(given).row(0) : given.row(0);
+    detail.row(c) += cells.Model.StateIsLines ? AsTensors(given).row(0) : given.row(0);
   }
   return detail;
 }
@@ -71,7 +71,7 @@ std::unique_ptr<Model> AddCellDetail(std::unique_ptr<Model> model, const Surface
   auto fluxes = std::make_unique<CellFluxes>(surface.InputMesh(), surface.Points(),
     CellsOfTriangles(surface, fields), fields.NumberOfCells, parallel);
   CellDetail::Data data{ FirstDetail(fields, cells), cells.Factors, cells.Held,
-    L1Rounding * valueRange, !cells.Reading.UnitVectors };
+    L1Rounding * valueRange, !cells.Model.StateIsUnitVectors };
   SolverTask task;
   task.NumberOfVertices = fields.NumberOfCells;
   task.NumberOfColumns = static_cast<int>(std::max(fields.AllColumns, data.Start.cols()));
@@ -99,8 +99,7 @@ std::unique_ptr<Model> AddCellDetail(std::unique_ptr<Model> model, const Surface
 Values MakeCellResult(
   const CellState& cells, const Values& state, const Values& given, bool keepDetail)
 {
-  const CellReading& reading = cells.Reading;
-  const bool lines = reading.Lines;
+  const bool lines = cells.Model.StateIsLines;
   const auto toCells = [&](const Values& u)
   { return cells.Transfer.ToCells(lines ? AsTensors(u) : u); };
   Values all = toCells(state);
@@ -123,7 +122,7 @@ Values MakeCellResult(
     {
       change += cells.Detail->Change(c);
     }
-    if (reading.UnitVectors)
+    if (cells.Model.StateIsUnitVectors)
     {
       Eigen::RowVectorXd vector = given.row(c);
       Normalize(vector);
@@ -134,7 +133,7 @@ Values MakeCellResult(
     }
     for (Eigen::Index k = 0; k < result.cols(); ++k)
     {
-      const double added = change[k] * reading.Unit;
+      const double added = change[k] * cells.Unit;
       result(c, k) = adds ? (added == 0.0 ? given(c, k) : given(c, k) + added) : added;
     }
   }

@@ -257,13 +257,11 @@ PointData Run::MakeData(Block& block, const Fields& fields, const Reduction& pro
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   if (fields.Data.OnCells)
   {
-    const ModelTraits traits = this->Settings->DescribeModel();
-    const CellReading reading{ inpaint, traits.UsesFidelity, traits.StateIsUnitVectors,
-      traits.StateIsLines, traits.HoldsKnownValues, block.Units.ValueUnit };
     block.Cells = std::make_unique<CellState>(
-      CellState{ MakeCellTransfer(*block.Surface, fields, this->Parallel), {}, false, {}, reading,
-        fields.Seeds.OnCells ? fields.Seeds.Values : std::vector<Index>(), {}, {}, nullptr,
-        block.Undetermined.Cells });
+      CellState{ MakeCellTransfer(*block.Surface, fields, this->Parallel),
+        this->Settings->DescribeModel(), inpaint, block.Units.ValueUnit });
+    block.Cells->Seeds = fields.Seeds.OnCells ? fields.Seeds.Values : std::vector<Index>();
+    block.Cells->Undetermined = block.Undetermined.Cells;
     return MakePointDataOfCells(*block.Surface, fields, *block.Cells, processes);
   }
   RunCollectively(processes,
