@@ -50,7 +50,6 @@ from __future__ import annotations
 
 import functools
 import inspect
-import math
 import textwrap
 from typing import Any, Callable, Iterable, Iterator, Sequence
 
@@ -859,8 +858,8 @@ def _run(
 
 def _find_step(time: Any, run: Any, interval: int) -> int:
     """The last step at or before a time whose state is published."""
-    if not isinstance(time, (int, float, np.number)) or math.isnan(float(time)):
-        raise ValueError(f"times has {shorten(time)}; allowed: numbers")
+    if not isinstance(time, (int, float, np.number)) or not float(time) >= 0.0:
+        raise ValueError(f"times has {shorten(time)}; allowed: numbers, 0 or more")
     last = run.number_of_steps()
     step = float(time) / run.time_step() + 1e-9  # it may have lost its last bits
     if step >= last:

@@ -602,8 +602,9 @@ class Meshes(unittest.TestCase):
             heat(mesh, "f", time_step=1, along_diffusivity=2)
         with self.assertRaisesRegex(TypeError, "no keyword 'fhwm'; did you mean 'fwhm'"):
             heat(mesh, "f", fhwm=1)
-        with self.assertRaisesRegex(ValueError, "times has 'end'; allowed: numbers"):
-            heat(mesh, "f", fwhm=1, times=["end"])
+        for time in ("end", -1, float("nan")):
+            with self.assertRaisesRegex(ValueError, f"times has {time!r}; allowed: numbers, 0 or more"):
+                heat(mesh, "f", fwhm=1, times=[0, time])
         with self.assertRaisesRegex(ValueError, "times is 3.0; allowed: a list of numbers"):
             heat(mesh, "f", fwhm=1, times=3.0)
         for other in (mesh["f"], ["f"]):
