@@ -7,6 +7,7 @@
 #include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
+#include "vtkInformation.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceCurvatureFilter.h"
@@ -71,6 +72,12 @@ FilterKind MakeKind(
     result };
 }
 
+/// Whether SetInputArrayToProcess() has chosen an array of this index by its name.
+inline bool HasInputArray(vtkAlgorithm* filter, int index)
+{
+  return filter->GetInputArrayInformation(index)->Has(vtkDataObject::FIELD_NAME()) != 0;
+}
+
 /// The weight of a point or cell in "weights" of AddArraysOfAllFilters().
 inline double WeightOf(vtkIdType i)
 {
@@ -124,6 +131,12 @@ inline std::vector<FilterKind> AllFilters()
   using Spline = vtkSurfaceInterpolationFilter;
   using Tensor = vtkTensorDiffusionFilter;
   using Turing = vtkTuringTextureFilter;
+  const auto holdToData = [](Segmentation* f) // noise has no regions if the weight is small
+  {
+    f->AutomaticFidelityOff();
+    f->SetFidelityWeight(50.0);
+    f->SetStopTolerance(0.1);
+  };
   return {
     MakeKind<Heat>("Heat", "fDiffused", 3),
     MakeKind<Heat>(
@@ -304,36 +317,24 @@ inline std::vector<FilterKind> AllFilters()
       }),
     MakeKind<Turing>("TuringCoarseStart", "u1", 4, [](Turing* f) { f->SetCoarseStartSize(300); }),
     MakeKind<Segmentation>("SegmentationDefaults", "RegionId", 1),
-    MakeKind<Segmentation>("Segmentation", "RegionId", 1,
-      [](Segmentation* f)
-      {
-        f->AutomaticFidelityOff();
-        f->SetFidelityWeight(50.0); // noise has no regions if the weight is small
-        f->SetStopTolerance(0.1);
-      }),
+    MakeKind<Segmentation>("Segmentation", "RegionId", 1, holdToData),
     MakeKind<Segmentation>("SegmentationOfThree", "RegionId", 1,
-      [](Segmentation* f)
+      [=](Segmentation* f)
       {
         f->SetNumberOfRegions(3);
         f->AutomaticMeansOff();
-        f->AutomaticFidelityOff();
-        f->SetFidelityWeight(50.0);
-        f->SetStopTolerance(0.1);
+        holdToData(f);
       }),
     MakeKind<Segmentation>("SegmentationWeighted", "RegionId", 1,
-      [](Segmentation* f)
+      [=](Segmentation* f)
       {
-        f->AutomaticFidelityOff();
-        f->SetFidelityWeight(50.0);
-        f->SetStopTolerance(0.1);
+        holdToData(f);
         SetInputArray(f, 5, "weights");
       }),
     Slow(MakeKind<Segmentation>("SegmentationOfCells", "RegionId", 1,
-      [](Segmentation* f)
+      [=](Segmentation* f)
       {
-        f->AutomaticFidelityOff();
-        f->SetFidelityWeight(50.0);
-        f->SetStopTolerance(0.1);
+        holdToData(f);
         SetInputArray(f, 0, "c", true);
       })),
     Slow(MakeKind<Spline>("Interpolation", "fInterpolated", 1,

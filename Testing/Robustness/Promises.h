@@ -4,9 +4,7 @@
 
 #include "AllFilters.h"
 
-#include "vtkDataObject.h"
 #include "vtkIdList.h"
-#include "vtkInformation.h"
 
 #include <gtest/gtest.h>
 
@@ -77,7 +75,7 @@ inline std::string FallOf(const std::vector<double>& energies)
 /// fidelity conserve sum A_i w_i u_i instead, which no history has.
 inline std::string ExpectTotalIsConserved(vtkAlgorithm* filter)
 {
-  if (filter->GetInputArrayInformation(5)->Has(vtkDataObject::FIELD_NAME()))
+  if (HasInputArray(filter, 5))
   {
     return "weighted";
   }

@@ -7,7 +7,6 @@
 #include "Twins.h"
 
 #include "vtkAppendPolyData.h"
-#include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
 
 #include <algorithm>
@@ -72,9 +71,7 @@ protected:
   /// Whether the value of a point or cell has weight 0, so that it may be filled in.
   bool IsWeightless(vtkIdType i) const
   {
-    const auto filter = this->GetParam().Make();
-    return filter->GetInputArrayInformation(5)->Has(vtkDataObject::FIELD_NAME()) &&
-      WeightOf(i) == 0.0;
+    return WeightOf(i) == 0.0 && HasInputArray(this->GetParam().Make(), 5);
   }
   template <typename Value>
   void Add(const char* name, int components, Value&& value, int type = VTK_DOUBLE) const
@@ -289,7 +286,8 @@ TEST_P(EveryKindWithData, KeepsTheBitsOfFixedHeldAndExcludedValues)
       for (int k = 0; k < result->GetNumberOfComponents(); ++k)
       {
         const bool same = result->GetComponent(i, k) == this->Data()->GetComponent(i, k);
-        EXPECT_TRUE(same || IsMarked(i) == held || this->IsWeightless(i)) << name << ' ' << i;
+        const bool fills = held && this->IsWeightless(i); // such a value is not known
+        EXPECT_TRUE(same || IsMarked(i) == held || fills) << name << ' ' << i;
         changed = changed || !same;
       }
     }
@@ -337,16 +335,15 @@ TEST_P(EveryKindWithTimes, StartsFromTheBitsOfItsData)
   for (vtkDataArray* const given : { this->Data(), this->AddBytes() })
   {
     const auto result = this->ResultOf(given->GetName(), "", before);
-    ASSERT_EQ(result->GetNumberOfTuples(), given->GetNumberOfTuples());
+    const auto expected = Copy(given);
     for (vtkIdType i = 0; i < given->GetNumberOfTuples(); ++i)
     {
-      for (int k = 0; k < given->GetNumberOfComponents(); ++k)
+      if (this->IsWeightless(i))
       {
-        EXPECT_TRUE(
-          result->GetComponent(i, k) == given->GetComponent(i, k) || this->IsWeightless(i))
-          << given->GetName() << ' ' << i;
+        expected->SetTuple(i, i, result);
       }
     }
+    EXPECT_TRUE(Identical(result, expected)) << given->GetName();
   }
 }
 

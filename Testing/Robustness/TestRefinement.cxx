@@ -85,9 +85,9 @@ TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
 {
   const auto refining = this->GetParam().Make();
   static const Spheres plain(-1), withMask(1), withWeights(5);
-  const auto has = [&](int index)
-  { return refining->GetInputArrayInformation(index)->Has(vtkDataObject::FIELD_NAME()) != 0; };
-  const Spheres& spheres = has(1) ? withMask : has(5) ? withWeights : plain;
+  const Spheres& spheres = HasInputArray(refining, 1) ? withMask
+    : HasInputArray(refining, 5)                      ? withWeights
+                                                      : plain;
   const auto given = this->GetParam().Make();
   vtkSurfaceFilter::SafeDownCast(refining)->SetRefineTo(Length);
   refining->SetInputData(spheres.Coarse);
