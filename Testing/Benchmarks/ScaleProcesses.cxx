@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Measures two time steps on a torus that is distributed over processes, one piece per process:
 ///
-///     mpiexec -n <processes> ScaleProcesses <vertices in all, or per process with "weak"> [weak]
-///         [<time step in natural units> [heat | turing | harmonic | tv | minimum]]
+///     mpiexec -n <processes> ScaleProcesses <vertices> [weak] [tiles] [<time step>]
+///         [heat | turing | harmonic | tv | minimum] [automatic]
+///
+/// vertices: in all, or per process with "weak". tiles: pieces in both directions, slabs without
+/// it. time step: in natural units. "minimum" is total variation with TimeIntegrator Implicit.
 ///
 /// For conjugate gradients with the Jacobi preconditioner and, if the model allows it, with
-/// multigrid, the program prints: vertices, seconds of the first update (identification of
-/// interface vertices, assembly, set-up, solve) and of a second step alone, iterations, interface
-/// vertices, bytes that the busiest process sends per matrix-vector product, and its memory.
-/// "minimum" is total variation with TimeIntegrator Implicit.
+/// multigrid, or for the solver that Automatic selects alone, the program prints: seconds of the
+/// surface (identification of interface vertices, assembly), of the first step with its set-up and
+/// of a second step alone, iterations of both steps, what the
+/// busiest process sends in an iteration of the second step, and its memory.
+#include "MessageCounts.h"
+
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
@@ -24,12 +29,16 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <string>
+#include <vector>
+
+using SurfaceDiffusion::MessageCounts;
 
 namespace
 {
@@ -55,10 +64,29 @@ double PeakMemory()
   return kilobytes / 1024.0;
 }
 
-/// Columns begin .. end of the `around` columns of a torus, each of `along` points. Neighbouring
-/// pieces share their end columns.
-vtkSmartPointer<vtkPolyData> Piece(
-  vtkIdType begin, vtkIdType end, vtkIdType around, vtkIdType along)
+/// A part of the columns, or of the points of a column, of a torus: Begin .. End of Count. The next
+/// part begins with the last points of this one.
+struct Range
+{
+  vtkIdType Begin, End, Count;
+
+  Range(int part, int parts, vtkIdType count)
+    : Begin(count * part / parts)
+    , End(count * (part + 1) / parts)
+    , Count(count)
+  {
+  }
+  bool IsClosed() const { return this->End - this->Begin == this->Count; }
+  vtkIdType NumberOfPoints() const { return this->End - this->Begin + (this->IsClosed() ? 0 : 1); }
+  vtkIdType After(vtkIdType i) const { return (i + 1) % this->NumberOfPoints(); }
+  double Angle(vtkIdType i) const
+  {
+    const vtkIdType number = (this->Begin + i) % this->Count;
+    return 2.0 * std::acos(-1.0) * static_cast<double>(number) / static_cast<double>(this->Count);
+  }
+};
+
+vtkSmartPointer<vtkPolyData> Piece(const Range& around, const Range& along)
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -67,14 +95,13 @@ vtkSmartPointer<vtkPolyData> Piece(
   vtkNew<vtkDoubleArray> vectors;
   vectors->SetName("v");
   vectors->SetNumberOfComponents(3);
-  const double turn = 2.0 * std::acos(-1.0);
-  const bool closed = end - begin == around;
-  for (vtkIdType i = begin; i <= (closed ? end - 1 : end); ++i)
+  const vtkIdType perColumn = along.NumberOfPoints();
+  for (vtkIdType i = 0; i < around.NumberOfPoints(); ++i)
   {
-    for (vtkIdType j = 0; j < along; ++j)
+    for (vtkIdType j = 0; j < perColumn; ++j)
     {
-      const double a = turn * static_cast<double>(i % around) / static_cast<double>(around);
-      const double b = turn * static_cast<double>(j) / static_cast<double>(along);
+      const double a = around.Angle(i);
+      const double b = along.Angle(j);
       const double r = 4.0 + std::cos(b);
       points->InsertNextPoint(r * std::cos(a), r * std::sin(a), std::sin(b));
       const double noise = std::sin(91.0 * a + 67.0 * b);
@@ -83,16 +110,15 @@ vtkSmartPointer<vtkPolyData> Piece(
     }
   }
   vtkNew<vtkCellArray> triangles;
-  for (vtkIdType i = 0; i < end - begin; ++i)
+  for (vtkIdType i = 0; i < around.End - around.Begin; ++i)
   {
-    for (vtkIdType j = 0; j < along; ++j)
+    for (vtkIdType j = 0; j < along.End - along.Begin; ++j)
     {
-      const vtkIdType next = (j + 1) % along;
-      const vtkIdType after = closed ? (i + 1) % around : i + 1;
-      const vtkIdType q[4] = { i * along + j, after * along + j, after * along + next,
-        i * along + next };
-      triangles->InsertNextCell({ q[0], q[1], q[2] });
-      triangles->InsertNextCell({ q[0], q[2], q[3] });
+      const vtkIdType here = i * perColumn;
+      const vtkIdType after = around.After(i) * perColumn;
+      const vtkIdType next = along.After(j);
+      triangles->InsertNextCell({ here + j, after + j, after + next });
+      triangles->InsertNextCell({ here + j, after + next, here + next });
     }
   }
   auto piece = vtkSmartPointer<vtkPolyData>::New();
@@ -101,6 +127,17 @@ vtkSmartPointer<vtkPolyData> Piece(
   piece->GetPointData()->SetScalars(data);
   piece->GetPointData()->AddArray(vectors);
   return piece;
+}
+
+/// The number of rows of tiles that are nearly square, on a torus four times as long as wide.
+int RowsOfTiles(int count)
+{
+  int rows = std::max(1, static_cast<int>(std::sqrt(count / 4.0)));
+  while (count % rows != 0)
+  {
+    --rows;
+  }
+  return rows;
 }
 
 using Filter = vtkSmartPointer<vtkSurfaceDiffusionAlgorithm>;
@@ -138,23 +175,44 @@ int main(int argc, char** argv)
   vtkMultiProcessController::SetGlobalController(controller);
   const int rank = controller->GetLocalProcessId();
   const int count = controller->GetNumberOfProcesses();
-  const bool weak = argc > 2 && std::string(argv[2]) == "weak";
-  const double all = (argc > 1 ? std::atof(argv[1]) : 1e5) * (weak ? count : 1);
-  const int next = weak ? 3 : 2;
-  const double step = argc > next ? std::atof(argv[next]) : 10.0;
-  const std::string model = argc > next + 1 ? argv[next + 1] : "heat";
-
-  const auto along = static_cast<vtkIdType>(std::sqrt(all / 4.0));
-  const vtkIdType around = 4 * along;
-  const double before = PeakMemory();
-  const auto piece = Piece(around * rank / count, around * (rank + 1) / count, around, along);
-  const double ofInput = PeakMemory();
-  for (const bool multigrid : { false, true })
+  double vertices = 1e5;
+  double step = 10.0;
+  bool weak = false, inTiles = false, automatic = false;
+  std::string model = "heat";
+  for (int i = 1; i < argc; ++i)
   {
-    if (multigrid && (model == "tv" || model == "minimum"))
+    const std::string word = argv[i];
+    weak = weak || word == "weak";
+    inTiles = inTiles || word == "tiles";
+    automatic = automatic || word == "automatic";
+    const double number = std::atof(argv[i]);
+    if (number > 0.0)
     {
-      continue;
+      (i == 1 ? vertices : step) = number;
     }
+    else if (word != "weak" && word != "tiles" && word != "automatic")
+    {
+      model = word;
+    }
+  }
+
+  const auto wide = static_cast<vtkIdType>(std::sqrt(vertices * (weak ? count : 1) / 4.0));
+  const vtkIdType longSide = 4 * wide;
+  const int rows = inTiles ? RowsOfTiles(count) : 1;
+  const Range around(rank / rows, count / rows, longSide);
+  const Range along(rank % rows, rows, wide);
+  const double before = PeakMemory();
+  const auto piece = Piece(around, along);
+  const double ofInput = PeakMemory();
+  using Solver = vtkSurfaceDiffusionAlgorithm;
+  std::vector<int> solvers = { Solver::SOLVER_AUTOMATIC };
+  if (!automatic)
+  {
+    solvers = { Solver::SOLVER_CONJUGATE_GRADIENT, Solver::SOLVER_MULTIGRID };
+    solvers.resize(model == "tv" || model == "minimum" ? 1 : 2);
+  }
+  for (const int solver : solvers)
+  {
     const Filter filter = MakeFilter(model);
     filter->SetInputData(piece);
     filter->SetTimeStep(step);
@@ -162,31 +220,39 @@ int main(int argc, char** argv)
     filter->SetNumberOfTimeSteps(2);
     filter->SetMaximumNumberOfIterations(100000);
     filter->SetTolerance(1e-8);
-    multigrid ? filter->SetSolverToMultigrid() : filter->SetSolverToConjugateGradient();
+    filter->SetSolver(solver);
     double seconds[3];
-    int iterations = 0;
+    double iterations[3];
+    MessageCounts counts;
     for (int n = 0; n < 3; ++n)
     {
       controller->Barrier();
+      counts = MessageCounts::OfThisProcess();
       const double start = Seconds();
       filter->UpdateInformation();
       filter->UpdateTimeStep(n * step);
       controller->Barrier();
       seconds[n] = Seconds() - start;
-      iterations = static_cast<int>(filter->GetNumberOfIterations());
+      iterations[n] = static_cast<double>(filter->GetNumberOfIterations());
     }
-    const double mine[2] = { PeakMemory() - before, ofInput - before };
-    double most[2];
-    controller->AllReduce(mine, most, 2, vtkCommunicator::MAX_OP);
+    const double ofLast = std::max(1.0, iterations[2] - iterations[1]);
+    const MessageCounts& now = MessageCounts::OfThisProcess();
+    const double mine[] = { PeakMemory() - before, ofInput - before,
+      (now.Messages - counts.Messages) / ofLast, (now.Bytes - counts.Bytes) / ofLast,
+      (now.Collectives - counts.Collectives) / ofLast,
+      (now.CollectiveBytes - counts.CollectiveBytes) / ofLast };
+    double most[6];
+    controller->AllReduce(mine, most, 6, vtkCommunicator::MAX_OP);
     if (rank == 0)
     {
-      std::cout << count << " processes, " << around * along << " vertices, " << model << ", dt "
-                << step << ", " << (multigrid ? "multigrid" : "Jacobi") << ": surface "
-                << seconds[0] << " s, first step (with set-up) " << seconds[1] << " s, second "
-                << seconds[2] << " s, iterations of both " << iterations << ", on interfaces "
-                << (count > 1 ? count * along : 0) << " vertices, sent per product "
-                << (count > 1 ? 2 * along * 8 : 0) << " bytes per process, memory " << most[0]
-                << " MiB of which input " << most[1] << "\n";
+      std::cout << count << " processes (" << count / rows << " x " << rows << "), "
+                << longSide * wide << " vertices, " << model << ", dt " << step << ", "
+                << filter->GetSolverAsString() << ": surface " << seconds[0]
+                << " s, first step (with set-up) " << seconds[1] << " s, second " << seconds[2]
+                << " s, iterations of both " << iterations[2] << "; the busiest process: memory "
+                << most[0] << " MiB of which input " << most[1] << ", in an iteration " << most[2]
+                << " messages of " << most[3] << " bytes, " << most[4]
+                << " collective operations with " << most[5] << " bytes\n";
     }
   }
   vtkMultiProcessController::SetGlobalController(nullptr);
