@@ -6,6 +6,7 @@
 #include "Distributed/Processes.h"
 
 #include <map>
+#include <set>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -28,44 +29,44 @@ void ExchangeRows(const Processes& processes, const std::map<int, std::vector<It
     const auto found = items.find(process);
     return found == items.end() ? none : found->second;
   };
-  std::map<int, bool> partners; // ascending
+  std::set<int> partners;
   for (const auto* items : { &sent, &received })
   {
     for (const auto& entry : *items)
     {
-      partners[entry.first] = true;
+      partners.insert(entry.first);
     }
   }
-  std::vector<double> outgoing, incoming;
-  for (const auto& partner : partners)
+  std::vector<double> numbers;
+  const auto send = [&](int other)
   {
-    const int other = partner.first;
-    const std::vector<Item>& out = itemsOf(sent, other);
-    const std::vector<Item>& in = itemsOf(received, other);
-    outgoing.resize(out.size() * columns);
-    incoming.resize(in.size() * columns);
-    for (std::size_t i = 0; i < out.size(); ++i)
+    const std::vector<Item>& items = itemsOf(sent, other);
+    numbers.resize(items.size() * columns);
+    for (std::size_t i = 0; i < items.size(); ++i)
     {
-      read(out[i], outgoing.data() + i * columns);
+      read(items[i], numbers.data() + i * columns);
     }
-    for (const bool send : { processes.Rank() < other, processes.Rank() > other })
+    if (!numbers.empty())
     {
-      if (send && !outgoing.empty())
-      {
-        processes.Controller()->Send(
-          outgoing.data(), static_cast<vtkIdType>(outgoing.size()), other, tag);
-      }
-      else if (!send && !incoming.empty())
-      {
-        processes.Controller()->Receive(
-          incoming.data(), static_cast<vtkIdType>(incoming.size()), other, tag);
-      }
+      processes.Controller()->Send(
+        numbers.data(), static_cast<vtkIdType>(numbers.size()), other, tag);
     }
-    for (std::size_t i = 0; i < in.size(); ++i)
+  };
+  const auto receive = [&](int other)
+  {
+    const std::vector<Item>& items = itemsOf(received, other);
+    numbers.resize(items.size() * columns);
+    if (!numbers.empty())
     {
-      write(in[i], incoming.data() + i * columns);
+      processes.Controller()->Receive(
+        numbers.data(), static_cast<vtkIdType>(numbers.size()), other, tag);
     }
-  }
+    for (std::size_t i = 0; i < items.size(); ++i)
+    {
+      write(items[i], numbers.data() + i * columns);
+    }
+  };
+  processes.ForEachPartner({ partners.begin(), partners.end() }, send, receive);
 }
 
 /// The vertices or edges of a process that other processes have too, and the exchange of rows of

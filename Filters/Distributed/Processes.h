@@ -4,6 +4,7 @@
 
 #include "vtkMultiProcessController.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <initializer_list>
 #include <map>
@@ -57,41 +58,55 @@ public:
     return perProcess;
   }
 
-  /// Exchanges a vector with each of the partners, which name this process too: those that they
-  /// sent, by partner. Each pair in turn, the process of lower rank first.
+  /// Messages between this process and each of the partners, which are ascending and name this
+  /// process too: send(other) to it, receive(other) from it. All send down, to lower ranks, before
+  /// they receive from higher ones, and then up. So no message waits for those of other pairs, as
+  /// long as MPI buffers it. One that MPI holds back until its receiver is ready waits for messages
+  /// to lower ranks only on the way down and to higher ones only on the way up, so that no
+  /// processes wait for each other.
+  template <typename Send, typename Receive>
+  void ForEachPartner(
+    const std::vector<int>& partners, const Send& send, const Receive& receive) const
+  {
+    const auto higher = std::lower_bound(partners.begin(), partners.end(), this->Rank());
+    std::for_each(partners.begin(), higher, send);
+    std::for_each(higher, partners.end(), receive);
+    const auto lower = std::make_reverse_iterator(higher);
+    std::for_each(partners.rbegin(), lower, send);
+    std::for_each(lower, partners.rend(), receive);
+  }
+
+  /// Exchanges a vector with each of the partners, see ForEachPartner(): those that they sent, by
+  /// partner.
   template <typename T>
   std::map<int, std::vector<T>> Exchange(
     const std::vector<int>& partners, const std::map<int, std::vector<T>>& sent) const
   {
     constexpr int tag = 7404;
-    static const std::vector<T> nothing;
     std::map<int, std::vector<T>> received;
-    for (const int other : partners)
+    const auto send = [&](int other)
     {
       const auto found = sent.find(other);
-      const std::vector<T>& here = found == sent.end() ? nothing : found->second;
-      for (const bool send : { this->Rank() < other, this->Rank() > other })
+      const vtkIdType length =
+        found == sent.end() ? 0 : static_cast<vtkIdType>(found->second.size());
+      this->Shared->Send(&length, 1, other, tag);
+      if (length > 0)
       {
-        if (send)
-        {
-          const auto length = static_cast<vtkIdType>(here.size());
-          this->Shared->Send(&length, 1, other, tag);
-          if (length > 0)
-          {
-            this->Shared->Send(here.data(), length, other, tag);
-          }
-          continue;
-        }
-        vtkIdType length = 0;
-        this->Shared->Receive(&length, 1, other, tag);
-        std::vector<T>& there = received[other];
-        there.resize(static_cast<std::size_t>(length));
-        if (length > 0)
-        {
-          this->Shared->Receive(there.data(), length, other, tag);
-        }
+        this->Shared->Send(found->second.data(), length, other, tag);
       }
-    }
+    };
+    const auto receive = [&](int other)
+    {
+      vtkIdType length = 0;
+      this->Shared->Receive(&length, 1, other, tag);
+      std::vector<T>& there = received[other];
+      there.resize(static_cast<std::size_t>(length));
+      if (length > 0)
+      {
+        this->Shared->Receive(there.data(), length, other, tag);
+      }
+    };
+    this->ForEachPartner(partners, send, receive);
     return received;
   }
 
