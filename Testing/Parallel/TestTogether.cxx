@@ -3,6 +3,8 @@
 /// Solves by domain decomposition: each process with its own piece.
 #include "Pieces.h"
 
+#include "Distributed/Processes.h"
+
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
@@ -23,6 +25,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <random>
 
 using namespace Pieces;
@@ -110,7 +113,15 @@ struct Case
   const char* Result;
   std::function<AnyFilter()> Make;
   double Tolerance;
+  int Columns = N; ///< of the square that they solve on
 };
+
+/// On a square that is too large for every process to solve a coarser level of it as a whole.
+Case WithLevels(Case of)
+{
+  of.Columns = 96;
+  return of;
+}
 
 template <typename Filter>
 Case MakeCase(
@@ -152,8 +163,8 @@ std::vector<Case> Cases()
       }),
     MakeCase<Turing>(
       "turing until stationary", "u2", "", 300, [](Turing* f) { f->SetStopTolerance(0.3); }, 1e-7),
-    MakeCase<Turing>(
-      "turing, multigrid", "u1", "", 5, [](Turing* f) { f->SetSolverToMultigrid(); }),
+    WithLevels(MakeCase<Turing>(
+      "turing, multigrid", "u1", "", 5, [](Turing* f) { f->SetSolverToMultigrid(); })),
     MakeCase<Harmonic>("harmonic", "vHarmonic", "v", 5),
     MakeCase<Harmonic>("harmonic, long steps", "vHarmonic", "v", 3,
       [](Harmonic* f)
@@ -161,12 +172,12 @@ std::vector<Case> Cases()
         f->SetTimeStep(100.0);
         f->SetExponent(2.0);
       }),
-    MakeCase<Harmonic>("harmonic, multigrid", "vHarmonic", "v", 3,
+    WithLevels(MakeCase<Harmonic>("harmonic, multigrid", "vHarmonic", "v", 3,
       [](Harmonic* f)
       {
         f->SetSolverToMultigrid();
         f->SetTimeStep(20.0);
-      }),
+      })),
     MakeCase<Harmonic>("harmonic, inpainting", "vHarmonic", "v", 5,
       [](Harmonic* f)
       {
@@ -313,12 +324,17 @@ class Together : public testing::TestWithParam<Case>
 {
 };
 
+vtkSmartPointer<vtkPolyData> MyPiece(const Case& of, bool sheared = false)
+{
+  return WithData(Mine(of.Columns), sheared, of.Columns);
+}
+
 TEST_P(Together, GiveTheResultOfTheWholeSurface)
 {
   for (const bool sheared : { false, true })
   {
     auto filter = GetParam().Make();
-    filter->SetInputData(WithData(Mine(N), sheared));
+    filter->SetInputData(MyPiece(GetParam(), sheared));
     bool workedHere = false; // if surfaces are gathered, only process 0 computes
     Listen(
       filter, [&](double amount) { workedHere = workedHere || (amount > 0.0 && amount < 1.0); });
@@ -327,7 +343,8 @@ TEST_P(Together, GiveTheResultOfTheWholeSurface)
 
     auto alone = GetParam().Make();
     alone->SetController(nullptr);
-    alone->SetInputData(WithData(Strip(0, N, N), sheared));
+    const int n = GetParam().Columns;
+    alone->SetInputData(WithData(Strip(0, n, n), sheared, n));
     alone->Update();
     const double difference =
       LargestDifference(filter->GetOutput(), alone->GetOutput(), GetParam().Result);
@@ -359,7 +376,7 @@ TEST_P(Together, GiveTheResultOfTheWholeSurface)
 TEST_P(Together, SeekInTime)
 {
   auto filter = GetParam().Make();
-  filter->SetInputData(WithData(Mine(N)));
+  filter->SetInputData(MyPiece(GetParam()));
   filter->SetGenerateTimeSteps(true);
   const std::vector<double> times = PublishedTimes(filter);
   if (times.size() < 3)
@@ -376,7 +393,7 @@ TEST_P(Together, SeekInTime)
   UpdateAt(filter, times[2]);
   EXPECT_TRUE(Identical(Result(filter, GetParam().Result), second));
   auto direct = GetParam().Make();
-  direct->SetInputData(WithData(Mine(N)));
+  direct->SetInputData(MyPiece(GetParam()));
   direct->SetNumberOfTimeSteps(2);
   direct->Update();
   EXPECT_TRUE(Identical(Result(direct, GetParam().Result), second));
@@ -422,7 +439,7 @@ vtkSmartPointer<vtkFVMHeatFilter> RunLongSteps(
 /// all vertices on interfaces, where the prolongation is not smoothed.
 TEST(MultigridOverProcesses, TakesHardlyMoreIterationsThanOneProcess)
 {
-  constexpr int n = 128;
+  constexpr int n = 224; // two levels with interfaces, and one that every process solves
   const auto alone = RunLongSteps(WithData(Strip(0, n, n), false, n), nullptr);
   std::mt19937 random(7);
   const auto inTiles = [](vtkIdType, const double* x)
@@ -461,7 +478,7 @@ INSTANTIATE_TEST_SUITE_P(Pieces, Together, testing::ValuesIn(Cases()));
 TEST_P(Together, StopWithinAStepIfOneOfThemIsAborted)
 {
   auto filter = GetParam().Make();
-  filter->SetInputData(WithData(Mine(N)));
+  filter->SetInputData(MyPiece(GetParam()));
   const unsigned long tag = Listen(filter,
     [&](double amount)
     {
@@ -478,7 +495,7 @@ TEST_P(Together, StopWithinAStepIfOneOfThemIsAborted)
   filter->Modified();
   filter->Update();
   auto fresh = GetParam().Make();
-  fresh->SetInputData(WithData(Mine(N)));
+  fresh->SetInputData(MyPiece(GetParam()));
   fresh->Update();
   EXPECT_TRUE(Identical(Result(filter, GetParam().Result), Result(fresh, GetParam().Result)));
 }
@@ -530,6 +547,28 @@ TEST(PiecesTogether, DampStepsThatWouldIncreaseTheEnergyAsTheWholeSurfaceDoes)
   alone->SetController(nullptr);
   alone->Update();
   EXPECT_LT(LargestDifference(together->GetOutput(), alone->GetOutput(), "vHarmonic"), 1e-9);
+}
+
+/// MPI holds large messages back until their receivers are ready.
+TEST(Processes, ExchangeLargeMessagesWithAllOthers)
+{
+  const SurfaceDiffusion::Processes processes(vtkMultiProcessController::GetGlobalController());
+  constexpr int length = 300000;
+  std::vector<int> others;
+  std::map<int, std::vector<double>> sent;
+  for (int other = 0; other < Count(); ++other)
+  {
+    if (other != Rank())
+    {
+      others.push_back(other);
+      sent[other].assign(length, 100.0 * Rank() + other);
+    }
+  }
+  const std::map<int, std::vector<double>> received = processes.Exchange(others, sent);
+  for (const int other : others)
+  {
+    EXPECT_EQ(received.at(other), std::vector<double>(length, 100.0 * other + Rank()));
+  }
 }
 
 TEST(PiecesTogether, ConserveTheTotal)

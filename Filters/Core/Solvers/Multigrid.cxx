@@ -16,6 +16,9 @@ namespace
 {
 
 constexpr Index LargestDirect = 500; // vertices of a level that is solved directly
+// The same over several processes, each of which solves the whole level: the messages of one more
+// level would take as long.
+constexpr Index LargestGathered = 5000;
 constexpr double LargestRatio = 0.8; // of the vertices of a level to those of the finer one
 constexpr double FinestStrength = 0.08; // of strong entries on the finest level, as in the paper
 
@@ -128,7 +131,8 @@ void Multigrid::MakeLevels(SparseMatrix& current, Vector kernel, const ProgressM
   std::shared_ptr<const Reduction> overProcesses = this->OverProcesses;
   double strength = FinestStrength;
   double fraction = 0.0;
-  for (double size = CountVertices(*overProcesses, current.rows()); size > LargestDirect;)
+  const Index smallest = overProcesses->IsSerial() ? LargestDirect : LargestGathered;
+  for (double size = CountVertices(*overProcesses, current.rows()); size > smallest;)
   {
     std::shared_ptr<const Reduction> next = overProcesses;
     const SparseMatrix restriction =
