@@ -67,7 +67,7 @@
  * block has it. One warning names these blocks. Each process solves with its piece, so that memory
  * and time are divided, if the surface has one piece per process, IntrinsicDelaunay and
  * MergeCoincidentPoints are off, and Solver is ConjugateGradient or Multigrid, or Automatic with
- * more than a million points. An abort is then obeyed by all processes within a few iterations.
+ * more than 10,000 points. An abort is then obeyed by all processes within a few iterations.
  * Some features are always computed in process 0, which then holds the whole surface:
  * AutomaticFidelity, Discretization CrouzeixRaviart of vtkIntrinsicTVFilter, EdgeCurves and
  * AutomaticThreshold of vtkMumfordShahFilter, and MoveVertices, computed normals and line fields

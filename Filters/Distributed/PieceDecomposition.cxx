@@ -49,12 +49,7 @@ void PieceDecomposition::Attach(Surface& surface, SolverStore& solvers)
   this->Domain = std::make_shared<DomainDecomposition>(this->Members, surface, this->Identity);
   this->Domain->ObeyAbort(this->AbortRequested);
   surface.SetReduction(this->Domain);
-  solvers.SetDistributedFactory(
-    [domain = this->Domain](bool multigrid, const ParallelFor& parallel)
-    {
-      return multigrid ? MakeMultigridSolver(domain, parallel)
-                       : MakeConjugateGradientSolver(domain, parallel);
-    });
+  solvers.SetProcesses(this->Domain, surface.InputMesh().NumberOfVertices());
 }
 
 void PieceDecomposition::UpdateCopies(

@@ -21,6 +21,14 @@ void SolverStore::Configure(const ModelTraits& traits, const ParallelFor& parall
   }
 }
 
+void SolverStore::SetProcesses(std::shared_ptr<const Reduction> overProcesses, Index vertices)
+{
+  this->OverProcesses = std::move(overProcesses);
+  this->AllVertices = static_cast<Index>(
+    this->OverProcesses->SumOverVertices(SerialFor(), vertices, [](Index) { return 1.0; }));
+  this->Solvers = {};
+}
+
 SolverChoice SolverStore::Choose(
   const SolverTask& task, double solvesPerStep, int numberOfSteps) const
 {
@@ -37,7 +45,7 @@ bool SolverStore::ServesRunOf(int numberOfSteps) const
   return std::all_of(this->Solvers.begin(), this->Solvers.end(),
     [&](const Kept& kept)
     {
-      return this->Distributed || !kept.IsUsed ||
+      return !kept.IsUsed ||
         WouldSolveAlike(
           *kept.Solver, kept.Choice, this->Choose(kept.Task, kept.SolvesPerStep, numberOfSteps));
     });
@@ -48,24 +56,21 @@ std::shared_ptr<LinearSolver> SolverStore::Find(
 {
   task.Tolerance = this->Limits.Tolerance;
   Kept& kept = this->Solvers[static_cast<std::size_t>(purpose)];
-  if (this->Distributed)
+  if (!this->OverProcesses->IsSerial())
   {
-    kept.Solver =
-      this->Distributed(PreferDistributedMultigrid(this->Method, task), *this->Parallel);
+    task.IsDistributed = true;
+    task.NumberOfVertices = this->AllVertices;
   }
-  else
+  const SolverChoice choice = this->Choose(task, solvesPerStep, this->NumberOfSteps);
+  if (!kept.Solver || kept.Choice != choice)
   {
-    const SolverChoice choice = this->Choose(task, solvesPerStep, this->NumberOfSteps);
-    if (!kept.Solver || kept.Choice != choice)
-    {
-      kept.Solver.reset(); // before another one takes memory
-      kept.Solver = MakeSolver(choice, *this->Parallel);
-      kept.Choice = choice;
-    }
-    kept.Task = task;
-    kept.SolvesPerStep = solvesPerStep;
-    kept.IsUsed = true;
+    kept.Solver.reset(); // before another one takes memory
+    kept.Solver = MakeSolver(choice, *this->Parallel, this->OverProcesses);
+    kept.Choice = choice;
   }
+  kept.Task = task;
+  kept.SolvesPerStep = solvesPerStep;
+  kept.IsUsed = true;
   kept.Solver->SetLimits(this->Limits);
   return kept.Solver;
 }

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <memory>
 
 namespace SurfaceDiffusion
@@ -34,12 +33,9 @@ enum class SolverPurpose
 class SolverStore
 {
 public:
-  /// Makes a solver over processes; multigrid: whether a multigrid preconditioner is wanted.
-  using DistributedFactory =
-    std::function<std::unique_ptr<LinearSolver>(bool multigrid, const ParallelFor& parallel)>;
-
   void Configure(const ModelTraits& traits, const ParallelFor& parallel);
-  void SetDistributedFactory(DistributedFactory factory) { this->Distributed = std::move(factory); }
+  /// Solve over processes. vertices: of this one. Collective.
+  void SetProcesses(std::shared_ptr<const Reduction> overProcesses, Index vertices);
 
   /// The solver that the traits ask for. task.Tolerance is set here. solvesPerStep: the number of
   /// solves with one matrix in each step of the run, or 0 if task.NumberOfSolves does not depend on
@@ -77,7 +73,8 @@ private:
   int NumberOfSteps = 0;
   IterationLimits Limits;
   const ParallelFor* Parallel = nullptr;
-  DistributedFactory Distributed;
+  std::shared_ptr<const Reduction> OverProcesses = Reduction::SharedSerial();
+  Index AllVertices = 0; ///< of all processes, if there are several
   std::array<Kept, static_cast<std::size_t>(SolverPurpose::Count)> Solvers;
 };
 

@@ -240,9 +240,10 @@ int main(int argc, char** argv)
     const double mine[] = { PeakMemory() - before, ofInput - before,
       (now.Messages - counts.Messages) / ofLast, (now.Bytes - counts.Bytes) / ofLast,
       (now.Collectives - counts.Collectives) / ofLast,
-      (now.CollectiveBytes - counts.CollectiveBytes) / ofLast };
-    double most[6];
-    controller->AllReduce(mine, most, 6, vtkCommunicator::MAX_OP);
+      (now.CollectiveBytes - counts.CollectiveBytes) / ofLast,
+      (now.Barriers - counts.Barriers) / ofLast };
+    double most[7];
+    controller->AllReduce(mine, most, 7, vtkCommunicator::MAX_OP);
     if (rank == 0)
     {
       std::cout << count << " processes (" << count / rows << " x " << rows << "), "
@@ -252,7 +253,8 @@ int main(int argc, char** argv)
                 << " s, iterations of both " << iterations[2] << "; the busiest process: memory "
                 << most[0] << " MiB of which input " << most[1] << ", in an iteration " << most[2]
                 << " messages of " << most[3] << " bytes, " << most[4]
-                << " collective operations with " << most[5] << " bytes\n";
+                << " collective operations with " << most[5] << " bytes, " << most[6]
+                << " barriers\n";
     }
   }
   vtkMultiProcessController::SetGlobalController(nullptr);

@@ -583,7 +583,31 @@ TEST(Automatic, TakesASteadyStateForALongStep)
   task.NumberOfVertices = 711000;
   task.DiffusionNumber.reset();
   EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Multigrid);
-  EXPECT_TRUE(PreferDistributedMultigrid(SolverMethod::Automatic, task));
+}
+
+/// Each process would have to factorise the whole matrix.
+TEST(Automatic, FactorisesOverProcessesOnlyIfNothingElseConverges)
+{
+  for (const Index vertices : { 100, 44000, 711000 })
+  {
+    for (const double diffusionNumber : { 0.1, 1.0, 1e4 })
+    {
+      SolverTask task;
+      task.NumberOfVertices = vertices;
+      task.DiffusionNumber = diffusionNumber;
+      task.NumberOfSolves = 1000.0;
+      EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Direct);
+      task.IsDistributed = true;
+      const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, task);
+      EXPECT_NE(choice.Method, SolverMethod::Direct);
+      EXPECT_TRUE(choice.FallsBack);
+      EXPECT_TRUE(
+        choice.Method == SolverMethod::Multigrid || choice.Next == SolverMethod::Multigrid);
+      task.AllowMultigrid = false;
+      EXPECT_EQ(
+        ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::ConjugateGradient);
+    }
+  }
 }
 
 TEST(Automatic, FactorisesForAPreconditionerAtAnySize)
@@ -595,7 +619,8 @@ TEST(Automatic, FactorisesForAPreconditionerAtAnySize)
   const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, task);
   EXPECT_EQ(choice.Method, SolverMethod::Direct);
   EXPECT_FALSE(choice.FallsBack);
-  EXPECT_TRUE(PreferDistributedMultigrid(SolverMethod::Automatic, task));
+  task.IsDistributed = true;
+  EXPECT_EQ(ChooseSolver(SolverMethod::Automatic, task).Method, SolverMethod::Multigrid);
 }
 
 TEST(SolverChoice, IsTheMethodAskedForUnlessAutomatic)
@@ -606,7 +631,6 @@ TEST(SolverChoice, IsTheMethodAskedForUnlessAutomatic)
     const SolverChoice choice = ChooseSolver(method, ManySolves());
     EXPECT_EQ(choice.Method, method);
     EXPECT_EQ(choice.FallsBack, method == SolverMethod::Multigrid); // it cannot resolve needles
-    EXPECT_EQ(PreferDistributedMultigrid(method, ManySolves()), method == SolverMethod::Multigrid);
   }
   EXPECT_TRUE(ChooseSolver(SolverMethod::Automatic, OneShortStep()).FallsBack);
   EXPECT_TRUE(ChooseSolver(SolverMethod::Automatic, OneShortStep()) !=

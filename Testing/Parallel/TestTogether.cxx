@@ -14,6 +14,7 @@
 #include "vtkTensorDiffusionFilter.h"
 #include "vtkTuringTextureFilter.h"
 
+#include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkIdList.h"
@@ -547,6 +548,62 @@ TEST(PiecesTogether, DampStepsThatWouldIncreaseTheEnergyAsTheWholeSurfaceDoes)
   alone->SetController(nullptr);
   alone->Update();
   EXPECT_LT(LargestDifference(together->GetOutput(), alone->GetOutput(), "vHarmonic"), 1e-9);
+}
+
+/// Meridians begin .. end of the n of a part of a sphere, with needles at its poles.
+vtkSmartPointer<vtkPolyData> Wedge(int begin, int end, int n)
+{
+  auto wedge = Strip(begin, end, n);
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("ids");
+  for (vtkIdType i = 0; i < wedge->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    wedge->GetPoint(i, x);
+    ids->InsertNextValue(std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n));
+    const double longitude = 6.0 * x[0];
+    const double latitude = std::acos(-1.0) * (x[1] * n + 0.5) / (n + 1);
+    wedge->GetPoints()->SetPoint(i, std::cos(longitude) * std::sin(latitude),
+      std::sin(longitude) * std::sin(latitude), std::cos(latitude));
+  }
+  wedge->GetPointData()->SetGlobalIds(ids);
+  return wedge;
+}
+
+TEST(AutomaticOverProcesses, ResolvesNeedles)
+{
+  constexpr int n = 120;
+  const auto make = [](int begin, int end)
+  {
+    auto heat = Make<vtkFVMHeatFilter>("f", 2);
+    heat->SetInputData(Wedge(begin, end, n));
+    heat->SetTimeStep(300.0);
+    return heat;
+  };
+  const auto together = make(n * Rank() / Count(), n * (Rank() + 1) / Count());
+  together->SetMaximumNumberOfIterations(100);
+  int errors = 0;
+  vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&errors);
+  count->SetCallback(
+    [](vtkObject*, unsigned long, void* counted, void*) { ++*static_cast<int*>(counted); });
+  together->AddObserver(vtkCommand::ErrorEvent, count);
+  together->Update();
+  EXPECT_EQ(errors, Rank() == 0 ? 1 : 0);
+  EXPECT_EQ(Result(together, "fDiffused"), nullptr); // with conjugate gradients
+  together->SetSolverToAutomatic();
+  together->Update();
+  const auto alone = make(0, n);
+  alone->SetController(nullptr);
+  alone->SetSolverToDirect();
+  alone->Update();
+  EXPECT_LT(LargestDifference(together->GetOutput(), alone->GetOutput(), "fDiffused"), 1e-9);
+  EXPECT_EQ(errors, Rank() == 0 ? 1 : 0);
+  if (Rank() == 0)
+  {
+    std::cout << Count() << " processes, needles: iterations " << together->GetNumberOfIterations()
+              << "\n";
+  }
 }
 
 /// MPI holds large messages back until their receivers are ready.

@@ -67,6 +67,12 @@ const Reduction& Reduction::Serial()
 
 double Reduction::Quantile(const Eigen::Ref<const Vector>& values, double fraction) const
 {
+  Vector copy = values;
+  return this->QuantileInPlace(copy, fraction);
+}
+
+double Reduction::QuantileInPlace(Vector& values, double fraction) const
+{
   if (!this->IsSerial())
   {
     return DistributedQuantile(*this, values, fraction);
@@ -75,10 +81,9 @@ double Reduction::Quantile(const Eigen::Ref<const Vector>& values, double fracti
   {
     return 0.0;
   }
-  Vector sorted = values;
-  double* const begin = sorted.data();
-  double* const at = begin + std::lround(fraction * static_cast<double>(sorted.size() - 1));
-  std::nth_element(begin, at, begin + sorted.size());
+  double* const begin = values.data();
+  double* const at = begin + std::lround(fraction * static_cast<double>(values.size() - 1));
+  std::nth_element(begin, at, begin + values.size());
   return *at;
 }
 

@@ -74,6 +74,8 @@ public:
   /// The quantile of the values at the vertices of the surface: of count values, in ascending
   /// order, that with the number fraction (count - 1), rounded. 0 without values.
   double Quantile(const Eigen::Ref<const Vector>& values, double fraction) const;
+  /// The same without a copy: the order of the values is lost.
+  double QuantileInPlace(Vector& values, double fraction) const;
 
   /// The processes are numbered from 0.
   virtual int Rank() const { return 0; }

@@ -467,6 +467,15 @@ std::unique_ptr<LinearSolver> MakeMultigridSolver(
     std::move(hierarchy), std::move(overProcesses), parallel);
 }
 
+std::unique_ptr<LinearSolver> MakeGatheredSolver(
+  std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel)
+{
+  auto hierarchy = std::make_unique<Multigrid>(parallel, overProcesses);
+  hierarchy->UseNoLevels();
+  return std::make_unique<ConjugateGradientSolver>(
+    std::move(hierarchy), std::move(overProcesses), parallel);
+}
+
 std::unique_ptr<LinearSolver> MakeMultigridSolver(
   const SparseMatrix& model, const ParallelFor& parallel)
 {

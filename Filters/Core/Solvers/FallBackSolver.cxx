@@ -28,14 +28,17 @@ constexpr double LargestOfRoundOff = 16.0;
 /// differences across them to the tolerance. The diagonal entries of such vertices are 1e8 times
 /// larger than others, and cancel in the row sums, which are the right-hand side of a step from the
 /// constant 1.
-bool HasUnresolvedNeedles(
-  const Vector& diagonal, const Vector& sums, double tolerance, const ParallelFor& parallel)
+bool HasUnresolvedNeedles(const Vector& diagonal, const Vector& sums, double tolerance,
+  const ParallelFor& parallel, const Reduction& overProcesses)
 {
   constexpr double large = 1e8;
   const auto n = static_cast<Index>(diagonal.size());
+  const double all = overProcesses.SumOverVertices(parallel, n, [](Index) { return 1.0; });
+  const auto logarithm = [&](Index i) { return std::log(diagonal[i]); };
   const double mean =
-    std::exp(Sum(parallel, n, [&](Index i) { return std::log(diagonal[i]); }) / std::max(n, 1));
-  if (!(Max(parallel, n, [&](Index i) { return diagonal[i]; }) > large * mean))
+    std::exp(overProcesses.SumOverVertices(parallel, n, logarithm) / std::max(all, 1.0));
+  const double largest = Max(parallel, n, [&](Index i) { return diagonal[i]; });
+  if (!overProcesses.Any(largest > large * mean))
   {
     return false;
   }
@@ -43,7 +46,8 @@ bool HasUnresolvedNeedles(
   const auto ofNeedle = [&](Index i) {
     return diagonal[i] > large * mean && std::abs(sums[i]) * large < diagonal[i] ? square(i) : 0.0;
   };
-  return Sum(parallel, n, ofNeedle) > tolerance * tolerance * Sum(parallel, n, square);
+  return overProcesses.SumOverVertices(parallel, n, ofNeedle) >
+    tolerance * tolerance * overProcesses.SumOverVertices(parallel, n, square);
 }
 
 } // namespace
@@ -56,24 +60,25 @@ void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor
   if (this->Patience > 0)
   {
     this->MeasureRows(matrix);
-    const double forecast = this->ForecastOf(matrix);
+    const bool hasNeedles = HasUnresolvedNeedles(
+      this->Diagonal, this->RowSums, this->Limits.Tolerance, this->Parallel, *this->OverProcesses);
+    const double forecast = this->TakeForecast();
     const bool isHopeless = forecast > this->Patience;
     begin = isHopeless ? 1 : 0;
     this->Needed =
       std::max(this->Needed, isHopeless ? std::numeric_limits<double>::infinity() : forecast);
-  }
-  if (this->Patience > 0 &&
-    HasUnresolvedNeedles(this->Diagonal, this->RowSums, this->Limits.Tolerance, this->Parallel))
-  {
-    try
+    if (hasNeedles)
     {
-      this->Methods[this->Factor]->SetMatrix(matrix, progress);
-      this->First = this->Factor;
-      this->HasMatrix = this->Factor + 1;
-      return;
-    }
-    catch (const std::runtime_error&)
-    {
+      try
+      {
+        this->Methods[this->Factor]->SetMatrix(matrix, progress);
+        this->First = this->Factor;
+        this->HasMatrix = this->Factor + 1;
+        return;
+      }
+      catch (const std::runtime_error&)
+      {
+      }
     }
   }
   for (this->First = begin;; ++this->First)
@@ -109,32 +114,31 @@ void FallBackSolver::MeasureRows(const SparseMatrix& matrix)
         this->RowSums[i] += a.value();
       }
     });
+  this->OverProcesses->Accumulate(this->Diagonal);
+  this->OverProcesses->Accumulate(this->RowSums);
 }
 
-/// Of conjugate gradients, from MeasureRows(): they need the iterations of even meshes on which the
-/// diffusion number is that of the stiffest fiftieth of the vertices. Few stiffer ones only add few
-/// eigenvalues, which are found one by one. 0: no forecast.
-double FallBackSolver::ForecastOf(const SparseMatrix& matrix)
+/// Of conjugate gradients, from MeasureRows(), whose row sums are lost: they need the iterations of
+/// even meshes on which the diffusion number is that of the stiffest fiftieth of the vertices. Few
+/// stiffer ones only add few eigenvalues, which are found one by one. 0: no forecast.
+double FallBackSolver::TakeForecast()
 {
   constexpr double perDiffusionNumber = 4.0; // dt K_ii / M_ii on an even mesh
   constexpr double exponent = 0.4; // of the diffusion number in the model of iterations
-  constexpr Index stiffest = 50; // one of so many vertices
-  const auto n = static_cast<Index>(matrix.rows());
-  if (this->ExpectedIterations == 0.0 || n < stiffest)
+  constexpr double stiffest = 0.02; // of the vertices
+  if (this->ExpectedIterations == 0.0)
   {
     return 0.0;
   }
-  this->Stiffness.resize(n);
-  ForEach(this->Parallel, n,
+  Vector& stiffness = this->RowSums;
+  ForEach(this->Parallel, static_cast<Index>(stiffness.size()),
     [&](Index i)
     {
       const double sum = this->RowSums[i];
-      this->Stiffness[i] = sum > 0.0 ? (this->Diagonal[i] - sum) / sum : 0.0;
+      stiffness[i] = sum > 0.0 ? (this->Diagonal[i] - sum) / sum : 0.0;
     });
-  double* const begin = this->Stiffness.data();
-  double* const found = begin + (n - n / stiffest);
-  std::nth_element(begin, found, begin + n);
-  const double ratio = *found / (perDiffusionNumber * this->DiffusionNumber);
+  const double found = this->OverProcesses->QuantileInPlace(stiffness, 1.0 - stiffest);
+  const double ratio = found / (perDiffusionNumber * this->DiffusionNumber);
   return this->ExpectedIterations * std::pow(std::max(ratio, 1.0), exponent);
 }
 
@@ -180,7 +184,7 @@ SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMoni
     }
     catch (const std::runtime_error&)
     {
-      if (!b.allFinite())
+      if (this->OverProcesses->Any(!b.allFinite()))
       {
         throw; // no method has an answer
       }
@@ -206,25 +210,34 @@ SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMoni
 double FallBackSolver::RoundOff(const Values& b, const Values& x) const
 {
   const SparseMatrix& matrix = *this->Matrix;
+  const Reduction& reduction = *this->OverProcesses;
   const auto n = static_cast<Index>(b.rows());
+  Values storage;
+  const Values& consistent = reduction.Accumulated(b, storage);
+  Vector diagonal(n), terms(n);
+  ForEach(this->Parallel, n, [&](Index i) { diagonal[i] = DiagonalEntry(matrix, i); });
+  reduction.Accumulate(diagonal);
   double least = std::numeric_limits<double>::infinity();
   for (Eigen::Index c = 0; c < b.cols(); ++c)
   {
-    const double unit = ScaleOf(b, x, c, this->Parallel);
-    // (number / unit)^2 over the diagonal entry
-    const auto square = [&](Index i, double number)
-    { return number / unit / DiagonalEntry(matrix, i) * (number / unit); };
-    const double ofTerms = Sum(this->Parallel, n,
+    const double unit = ScaleOf(b, x, c, this->Parallel, reduction);
+    const auto sumOfSquares = [&](const auto& number)
+    {
+      return reduction.SumOverVertices(this->Parallel, n,
+        [&](Index i) { return number(i) / unit / diagonal[i] * (number(i) / unit); });
+    };
+    ForEach(this->Parallel, n,
       [&](Index i)
       {
-        double terms = 0.0;
+        terms[i] = 0.0;
         for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
         {
-          terms += std::abs(matrix.valuePtr()[slot] * x(matrix.innerIndexPtr()[slot], c));
+          terms[i] += std::abs(matrix.valuePtr()[slot] * x(matrix.innerIndexPtr()[slot], c));
         }
-        return square(i, terms);
       });
-    const double ofB = Sum(this->Parallel, n, [&](Index i) { return square(i, b(i, c)); });
+    reduction.Accumulate(terms);
+    const double ofTerms = sumOfSquares([&](Index i) { return terms[i]; });
+    const double ofB = sumOfSquares([&](Index i) { return consistent(i, c); });
     least = std::min(least, ofB > 0.0 ? ofTerms / ofB : 0.0);
   }
   return std::numeric_limits<double>::epsilon() * std::sqrt(least);

@@ -24,15 +24,18 @@ namespace SurfaceDiffusion
 class FallBackSolver : public LinearSolver
 {
 public:
-  /// factor: the number of the method that is a factorisation.
+  /// factor: the number of the method that is a factorisation. overProcesses: over which the
+  /// matrices are accumulated.
   FallBackSolver(std::vector<std::unique_ptr<LinearSolver>> methods, std::size_t factor,
-    const SolverChoice& choice, const ParallelFor& parallel)
+    const SolverChoice& choice, const ParallelFor& parallel,
+    std::shared_ptr<const Reduction> overProcesses)
     : Methods(std::move(methods))
     , Factor(factor)
     , Patience(choice.Patience)
     , ExpectedIterations(choice.ExpectedIterations)
     , DiffusionNumber(choice.DiffusionNumber)
     , Parallel(parallel)
+    , OverProcesses(std::move(overProcesses))
   {
   }
 
@@ -57,7 +60,7 @@ private:
       this->Patience > 0;
   }
   double RoundOff(const Values& b, const Values& x) const;
-  double ForecastOf(const SparseMatrix& matrix);
+  double TakeForecast();
   void MeasureRows(const SparseMatrix& matrix);
   void Decide(std::size_t method, bool isGood);
 
@@ -66,12 +69,13 @@ private:
   const int Patience;
   const double ExpectedIterations, DiffusionNumber;
   const ParallelFor& Parallel;
+  const std::shared_ptr<const Reduction> OverProcesses;
   const SparseMatrix* Matrix = nullptr;
   std::size_t First = 0; ///< the method that solves begin with
   std::size_t HasMatrix = 0; ///< the methods before this one have the matrix or are out of use
   bool IsUndecided = true; ///< no solve with the matrix yet
   Values Best;
-  Vector Diagonal, RowSums, Stiffness; ///< of the matrix, kept so that time steps do not allocate
+  Vector Diagonal, RowSums; ///< of the matrix, kept so that time steps do not allocate
   double Needed = 0.0; ///< the least patience of all trials; infinite if one went wrong
 };
 

@@ -118,6 +118,14 @@ std::unique_ptr<LinearSolver> MakeMultigridSolver(const ParallelFor& parallel = 
 std::unique_ptr<LinearSolver> MakeMultigridSolver(
   std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel);
 
+/// The largest matrix that every process factorises, in 0.25 GB.
+constexpr Index LargestReplicated = 200000;
+
+/// Over processes each of which factorises the matrix of all of them, as preconditioner. Throws
+/// std::runtime_error if that has more than LargestReplicated rows.
+std::unique_ptr<LinearSolver> MakeGatheredSolver(
+  std::shared_ptr<const Reduction> overProcesses, const ParallelFor& parallel);
+
 /// The same for matrices of the pattern of `model`, whose hierarchies all take the aggregates of
 /// that of `model`: SetMatrix() takes a fraction of the time.
 std::unique_ptr<LinearSolver> MakeMultigridSolver(

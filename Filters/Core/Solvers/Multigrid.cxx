@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -131,8 +132,14 @@ void Multigrid::MakeLevels(SparseMatrix& current, Vector kernel, const ProgressM
   std::shared_ptr<const Reduction> overProcesses = this->OverProcesses;
   double strength = FinestStrength;
   double fraction = 0.0;
-  const Index smallest = overProcesses->IsSerial() ? LargestDirect : LargestGathered;
-  for (double size = CountVertices(*overProcesses, current.rows()); size > smallest;)
+  double size = CountVertices(*overProcesses, current.rows());
+  if (this->HasNoLevels && size > LargestReplicated)
+  {
+    throw std::runtime_error("The matrix is too large to be factorised in every process.");
+  }
+  const Index ofDistributed = this->HasNoLevels ? LargestReplicated : LargestGathered;
+  const Index smallest = overProcesses->IsSerial() ? LargestDirect : ofDistributed;
+  while (size > smallest)
   {
     std::shared_ptr<const Reduction> next = overProcesses;
     const SparseMatrix restriction =

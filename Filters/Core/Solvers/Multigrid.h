@@ -38,6 +38,10 @@ public:
   explicit Multigrid(const ParallelFor& parallel,
     std::shared_ptr<const Reduction> overProcesses = Reduction::SharedSerial());
 
+  /// Over processes: no levels, so that every process factorises the whole matrix. SetMatrix() then
+  /// throws std::runtime_error if it has more than LargestReplicated rows.
+  void UseNoLevels() { this->HasNoLevels = true; }
+
   /// On one process: the hierarchies of all later matrices, which have the pattern of `model`, take
   /// its aggregates: making them then takes a fraction of the time. Throws as SetMatrix().
   void KeepAggregates(const SparseMatrix& model);
@@ -108,6 +112,7 @@ private:
   std::vector<double> InterfaceNumbers; ///< work
   int Columns = -1; ///< for which the vectors are allocated
   bool HasSlices = false; ///< the levels have them
+  bool HasNoLevels = false;
 };
 
 } // namespace SurfaceDiffusion

@@ -45,8 +45,6 @@ constexpr double LeastOfNext = 1.25; // of the time of the next method
 // surfaces of SolverCosts.h.
 constexpr double FactorOfParametric = 1.7;
 constexpr double MostOfExpected = 5.0;
-// Over several processes longer steps are cheaper with multigrid.
-constexpr double LargestDistributedJacobi = 10.0;
 } // namespace Measured
 
 double DiffusionNumberOf(const SolverTask& task)
@@ -129,7 +127,8 @@ SolverChoice FindFastest(const SolverTask& task)
   using namespace Measured;
   SolverChoice choice;
   choice.FallsBack = true;
-  if (task.NumberOfVertices <= SmallestIterative && task.Tolerance < LargestToleranceOfSmall)
+  if (task.NumberOfVertices <= SmallestIterative && task.Tolerance < LargestToleranceOfSmall &&
+    !task.IsDistributed)
   {
     return choice;
   }
@@ -137,7 +136,8 @@ SolverChoice FindFastest(const SolverTask& task)
   const double conjugateGradient = costs.Iterations() * costs.Iteration();
   const double iterative =
     task.AllowMultigrid ? std::min(conjugateGradient, costs.Multigrid()) : conjugateGradient;
-  const bool hasRoom = task.NumberOfVertices <= LargestFactor || !task.AllowMultigrid;
+  const bool hasRoom =
+    !task.IsDistributed && (task.NumberOfVertices <= LargestFactor || !task.AllowMultigrid);
   if (costs.Factorization() < iterative && hasRoom)
   {
     return choice;
@@ -166,16 +166,18 @@ SolverChoice FindFastest(const SolverTask& task)
   return choice;
 }
 
-std::unique_ptr<LinearSolver> MakeOne(SolverMethod method, const ParallelFor& parallel)
+std::unique_ptr<LinearSolver> MakeOne(SolverMethod method, const ParallelFor& parallel,
+  const std::shared_ptr<const Reduction>& overProcesses)
 {
   switch (method)
   {
     case SolverMethod::Direct:
-      return MakeCholeskySolver(parallel);
+      return overProcesses->IsSerial() ? MakeCholeskySolver(parallel)
+                                       : MakeGatheredSolver(overProcesses, parallel);
     case SolverMethod::Multigrid:
-      return MakeMultigridSolver(parallel);
+      return MakeMultigridSolver(overProcesses, parallel);
     default:
-      return MakeConjugateGradientSolver(parallel);
+      return MakeConjugateGradientSolver(overProcesses, parallel);
   }
 }
 
@@ -188,7 +190,8 @@ SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task)
     return FindFastest(task);
   }
   SolverChoice choice;
-  choice.Method = method == SolverMethod::Automatic ? SolverMethod::Direct : method;
+  const SolverMethod best = task.IsDistributed ? SolverMethod::Multigrid : SolverMethod::Direct;
+  choice.Method = method == SolverMethod::Automatic ? best : method;
   if (method == SolverMethod::Multigrid && !task.IsPreconditioner)
   {
     choice.FallsBack = true;
@@ -209,11 +212,12 @@ bool WouldSolveAlike(
     made.Patience > 0 && other.Patience > 0 && trying->EndsAlike(other.Patience);
 }
 
-std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const ParallelFor& parallel)
+std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const ParallelFor& parallel,
+  const std::shared_ptr<const Reduction>& overProcesses)
 {
   if (!choice.FallsBack)
   {
-    return MakeOne(choice.Method, parallel);
+    return MakeOne(choice.Method, parallel, overProcesses);
   }
   std::vector<SolverMethod> order = { choice.Method };
   for (const SolverMethod next :
@@ -227,21 +231,11 @@ std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const Paral
   std::vector<std::unique_ptr<LinearSolver>> methods;
   for (const SolverMethod method : order)
   {
-    methods.push_back(MakeOne(method, parallel));
+    methods.push_back(MakeOne(method, parallel, overProcesses));
   }
   const auto factor = std::find(order.begin(), order.end(), SolverMethod::Direct) - order.begin();
   return std::make_unique<FallBackSolver>(
-    std::move(methods), static_cast<std::size_t>(factor), choice, parallel);
-}
-
-bool PreferDistributedMultigrid(SolverMethod method, const SolverTask& task)
-{
-  if (method != SolverMethod::Automatic)
-  {
-    return method == SolverMethod::Multigrid;
-  }
-  const bool isLong = DiffusionNumberOf(task) > Measured::LargestDistributedJacobi;
-  return task.IsPreconditioner || (task.AllowMultigrid && isLong);
+    std::move(methods), static_cast<std::size_t>(factor), choice, parallel, overProcesses);
 }
 
 } // namespace SurfaceDiffusion

@@ -38,6 +38,9 @@ struct SolverTask
   /// which do not map constants to zero, and diffusivities that change in every step and by orders
   /// of magnitude from triangle to triangle.
   bool AllowMultigrid = true;
+  /// Several processes have a part of the surface each. They factorise a matrix only if all else
+  /// fails.
+  bool IsDistributed = false;
   /// The solver is the preconditioner of another iteration (LinearSolver::Precondition), which has
   /// tried the diagonal already and needs a method that knows the whole matrix.
   bool IsPreconditioner = false;
@@ -80,17 +83,15 @@ SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task);
 bool WouldSolveAlike(
   const LinearSolver& solver, const SolverChoice& made, const SolverChoice& other);
 
-std::unique_ptr<LinearSolver> MakeSolver(
-  const SolverChoice& choice, const ParallelFor& parallel = SerialFor());
+/// overProcesses: over which the matrices are accumulated.
+std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice,
+  const ParallelFor& parallel = SerialFor(),
+  const std::shared_ptr<const Reduction>& overProcesses = Reduction::SharedSerial());
 
 inline std::unique_ptr<LinearSolver> MakeSolver(SolverMethod method,
   const SolverTask& task = SolverTask(), const ParallelFor& parallel = SerialFor())
 {
   return MakeSolver(ChooseSolver(method, task), parallel);
 }
-
-/// Over several processes, where only conjugate gradients are available: whether multigrid
-/// preconditions them rather than the diagonal.
-bool PreferDistributedMultigrid(SolverMethod method, const SolverTask& task);
 
 } // namespace SurfaceDiffusion
