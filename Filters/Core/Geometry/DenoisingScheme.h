@@ -42,7 +42,7 @@ struct DenoisingScheme
   double SecondOrder = 1.3; ///< weight of the second order over that of the first
   double VariationRange = 0.3; ///< of the weights of the edges
   double VariationFidelity = 0.1; ///< of the fit, for noise of 0.3 h
-  int VariationSplittings = 12; ///< in each of them
+  int VariationSplittings = 13; ///< in each of them
   int VariationFitIterations = 6;
   double VariationTangentialFidelity = 0.1; ///< of this fit and the last
   /// The end: one fit to the normals of the last iteration that is nearly solved, with a fidelity

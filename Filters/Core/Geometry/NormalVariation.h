@@ -32,9 +32,9 @@ struct NormalVariationSettings
 /// a plane have no variation, and jumps have that of their height.
 ///
 /// The energy is split: v = D (n, u) are the differences at the edges, and the alternating direction
-/// method of multipliers takes turns between (n, u), by one step of steepest descent with a
-/// preconditioner from the last ones, and the shrinkage of v. The three components of the normals
-/// share all coefficients. All of this is in single precision, sums over the surface in double.
+/// method of multipliers takes turns between (n, u), by one step of descent of a fixed length with
+/// a preconditioner from the last ones, and the shrinkage of v. The three components of the normals
+/// share all coefficients. All of this is in single precision.
 class NormalVariation
 {
 public:

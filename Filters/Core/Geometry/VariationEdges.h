@@ -82,11 +82,6 @@ inline void Shrink(
   v.Rows[2] *= slope;
 }
 
-inline float Product(const VariationBlock& a, const VariationBlock& b)
-{
-  return (a.Rows[0] * b.Rows[0] + a.Rows[1] * b.Rows[1] + a.Rows[2] * b.Rows[2]).sum();
-}
-
 /// The edges of a surface over which the variation of normals is summed: those between two
 /// triangles.
 class VariationEdges
