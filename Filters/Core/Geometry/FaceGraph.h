@@ -41,13 +41,26 @@ struct FaceGeometry
   void MeasureWidths(const FaceGraph& graph, const ParallelFor& parallel);
 };
 
+/// 1 - x / 8, and 0 from x = 8 on.
+template <typename Number>
+Number Fade(Number x)
+{
+  const Number y = Number(1) - Number(0.125) * x;
+  return y > Number(0) ? y : Number(0);
+}
+
+template <typename Number>
+Number EighthPower(Number y)
+{
+  const Number square = y * y;
+  return (square * square) * (square * square);
+}
+
 /// exp(-x) for x >= 0 within 0.04, and 0 from x = 8 on: a weight that needs no library function, so
 /// that its bits are the same on all platforms.
 inline double FallOff(double x)
 {
-  const double y = x < 8.0 ? 1.0 - 0.125 * x : 0.0;
-  const double square = y * y;
-  return (square * square) * (square * square);
+  return EighthPower(Fade(x));
 }
 
 } // namespace SurfaceDiffusion
