@@ -84,7 +84,7 @@ Vector DisplacementStatistics::LocalWhiteness(const Vector& displacements) const
   this->Average(squares, WhitenessSweeps);
   Vector whiteness(squares.rows());
   ForEach(this->Parallel, static_cast<Index>(squares.rows()),
-    [&](Index i) { whiteness[i] = squares(i, 1) > 0.0 ? squares(i, 0) / squares(i, 1) : 0.0; });
+    [&](Index i) { whiteness[i] = squares(i, 1) > 0.0F ? squares(i, 0) / squares(i, 1) : 0.0; });
   return whiteness;
 }
 
@@ -106,7 +106,8 @@ DisplacementStatistics::Squares DisplacementStatistics::FindSquares(
     {
       if (!this->IsFixed(i))
       {
-        squares.row(i) << this->Count(i) * means[i] * means[i], displacements[i] * displacements[i];
+        squares(i, 0) = static_cast<float>(this->Count(i) * means[i] * means[i]);
+        squares(i, 1) = static_cast<float>(displacements[i] * displacements[i]);
       }
     });
   return squares;
@@ -121,12 +122,13 @@ void DisplacementStatistics::Average(Matrix& values, int sweeps) const
     ForEach(this->Parallel, static_cast<Index>(values.rows()),
       [&](Index i)
       {
-        Eigen::Matrix<double, 1, Matrix::ColsAtCompileTime> sum = values.row(i);
+        using Number = typename Matrix::Scalar;
+        Eigen::Array<Number, 1, Matrix::ColsAtCompileTime> sum = values.row(i).array();
         for (Offset k = this->Around.Begin[i]; k < this->Around.Begin[i + 1]; ++k)
         {
-          sum += values.row(this->Around.Entries[k]);
+          sum += values.row(this->Around.Entries[k]).array();
         }
-        next.row(i) = sum / this->Count(i);
+        next.row(i) = sum / static_cast<Number>(this->Count(i));
       });
     values.swap(next);
   }

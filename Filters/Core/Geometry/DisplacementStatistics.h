@@ -48,8 +48,8 @@ private:
     return static_cast<double>(1 + this->Around.Begin[i + 1] - this->Around.Begin[i]);
   }
   double FreeCount(Index i) const; ///< of it and the neighbours that are not fixed
-  /// Per vertex: s^2 / m and d^2.
-  using Squares = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+  /// Per vertex: s^2 / m and d^2, in single precision.
+  using Squares = Eigen::Matrix<float, Eigen::Dynamic, 2, Eigen::RowMajor>;
   Squares FindSquares(const Vector& displacements) const;
   template <typename Matrix>
   void Average(Matrix& values, int sweeps) const;
