@@ -52,6 +52,9 @@ constexpr WhitenessLimits LimitsOfResult = { 0.85, 1.1 };
 /// the noise: nothing from this mean square on, in squares of the noise. Impulsive noise, whose
 /// level is that of fewer vertices, and noise that is underestimated have up to 2.
 constexpr double LargestMeanSquare = 3.0;
+/// The mean displacement in an iteration of the second stage, in standard deviations of the noise,
+/// at which it ends. Only smooth surfaces come to it before the last iteration.
+constexpr double SmallestStep = 0.0025;
 /// The pauses between measurements of the whiteness grow by one iteration after so many, since
 /// steps become smaller.
 constexpr int IterationsPerPause = 4;
@@ -149,21 +152,28 @@ private:
       this->TurnFlippedFaces(this->Moved);
       if (isCareful)
       {
-        for (Index k = 0; k < static_cast<Index>(careful.rows()); ++k)
-        {
-          careful.row(k) += shares[k] * (this->Moved.row(k) - before.row(k));
-        }
+        const double moved = Sum(this->Parallel, static_cast<Index>(careful.rows()),
+          [&](Index k)
+          {
+            const Eigen::RowVector3d step = this->Moved.row(k) - before.row(k);
+            careful.row(k) += shares[k] * step;
+            return step.norm();
+          });
         this->TurnFlippedFaces(careful);
+        if (moved < SmallestStep * this->Noise * static_cast<double>(careful.rows()))
+        {
+          break;
+        }
       }
     }
     if (isCareful)
     {
       this->Geometry.Measure(this->Graph.Mesh, this->Moved, this->Parallel);
       shares = this->Shares(LimitsOfResult, this->Moved);
-      for (Index k = 0; k < static_cast<Index>(careful.rows()); ++k)
-      {
-        this->Moved.row(k) = careful.row(k) + shares[k] * (this->Moved.row(k) - careful.row(k));
-      }
+      ForEach(this->Parallel, static_cast<Index>(careful.rows()),
+        [&](Index k) {
+          this->Moved.row(k) = careful.row(k) + shares[k] * (this->Moved.row(k) - careful.row(k));
+        });
       this->Geometry.Measure(this->Graph.Mesh, this->Moved, this->Parallel);
       this->FitNormals();
       this->TurnFlippedFaces(this->Moved);
