@@ -68,8 +68,8 @@ struct LinearFits
   Lane V[3], VX[3], VY[3];
 };
 
-/// Add neighbour after neighbour. The axes of the fits are those of T. Duff et al., Building an Orthonormal Basis, Revisited, JCGT
-/// 6(1), 2017.
+/// Add neighbour after neighbour. The axes of the fits are those of T. Duff et al., Building an
+/// Orthonormal Basis, Revisited, JCGT 6(1), 2017.
 SURFACEDIFFUSION_ANY_VECTORS void AddNeighbours(const Neighbours* neighbours, std::size_t count,
   const Lane* guide, float distanceFactor, float rangeFactor, LinearFits& result)
 {
