@@ -610,6 +610,49 @@ TEST(Automatic, FactorisesOverProcessesOnlyIfNothingElseConverges)
   }
 }
 
+namespace
+{
+
+/// Of several processes of which the others have no vertices.
+class OneOfMany : public Reduction
+{
+public:
+  explicit OneOfMany(Eigen::Index vertices)
+    : Reduction(Reduction::Kind::Distributed)
+  {
+    this->OwnedVertices.assign(static_cast<std::size_t>(vertices), true);
+  }
+};
+
+} // namespace
+
+TEST(Automatic, IteratesToTheEndOverProcessesThatHaveNoRoomForAFactor)
+{
+  const auto assembler = MakeAssembler(Strip(450, 450));
+  const double h = assembler->Mesh().MeanEdgeLength();
+  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0 * h * h); // worse than the task says
+  SolverTask task;
+  task.NumberOfVertices = static_cast<Index>(matrix.rows());
+  ASSERT_GT(task.NumberOfVertices, LargestReplicated);
+  task.NumberOfSolves = 1000.0;
+  task.AllowMultigrid = false;
+  task.IsDistributed = true;
+  const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, task);
+  const auto solver =
+    MakeSolver(choice, SerialFor(), std::make_shared<const OneOfMany>(matrix.rows()));
+  solver->SetMatrix(matrix);
+  const Values exact = Noise(assembler->Mesh(), 1);
+  const Values b = matrix * exact;
+  for (int solve = 0; solve < 2; ++solve)
+  {
+    Values x = Values::Zero(exact.rows(), 1);
+    const SolveReport report = solver->Solve(b, x);
+    EXPECT_TRUE(report.Converged);
+    EXPECT_GT(report.Iterations, choice.Patience);
+    EXPECT_LT((x - exact).cwiseAbs().maxCoeff(), 1e-6);
+  }
+}
+
 TEST(Automatic, FactorisesForAPreconditionerAtAnySize)
 {
   SolverTask task;

@@ -67,7 +67,7 @@ void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor
     begin = isHopeless ? 1 : 0;
     this->Needed =
       std::max(this->Needed, isHopeless ? std::numeric_limits<double>::infinity() : forecast);
-    if (hasNeedles)
+    if (hasNeedles && this->Factor < this->Methods.size())
     {
       try
       {

@@ -24,7 +24,8 @@ namespace SurfaceDiffusion
 class FallBackSolver : public LinearSolver
 {
 public:
-  /// factor: the number of the method that is a factorisation. overProcesses: over which the
+  /// factor: the number of the method that is a factorisation, or that of methods if there is none.
+  /// overProcesses: over which the
   /// matrices are accumulated.
   FallBackSolver(std::vector<std::unique_ptr<LinearSolver>> methods, std::size_t factor,
     const SolverChoice& choice, const ParallelFor& parallel,
@@ -56,8 +57,8 @@ private:
     Values& x, const ProgressMonitor& progress);
   bool IsTrial(std::size_t method) const
   {
-    return method == this->First && method != this->Factor && this->IsUndecided &&
-      this->Patience > 0;
+    return method == this->First && method != this->Factor && method + 1 < this->Methods.size() &&
+      this->IsUndecided && this->Patience > 0;
   }
   double RoundOff(const Values& b, const Values& x) const;
   double TakeForecast();

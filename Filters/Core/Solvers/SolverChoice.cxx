@@ -58,6 +58,12 @@ int PatienceOf(double iterations)
   return static_cast<int>(std::min(iterations, 1e9));
 }
 
+/// SolverChoice::MayFactorize
+bool MayFactorize(const SolverTask& task)
+{
+  return !task.IsDistributed || task.NumberOfVertices <= LargestReplicated;
+}
+
 /// Seconds that a method is expected to take in all, by SolverCosts.h.
 class ExpectedCosts
 {
@@ -127,6 +133,7 @@ SolverChoice FindFastest(const SolverTask& task)
   using namespace Measured;
   SolverChoice choice;
   choice.FallsBack = true;
+  choice.MayFactorize = MayFactorize(task);
   if (task.NumberOfVertices <= SmallestIterative && task.Tolerance < LargestToleranceOfSmall &&
     !task.IsDistributed)
   {
@@ -195,6 +202,7 @@ SolverChoice ChooseSolver(SolverMethod method, const SolverTask& task)
   if (method == SolverMethod::Multigrid && !task.IsPreconditioner)
   {
     choice.FallsBack = true;
+    choice.MayFactorize = MayFactorize(task);
     choice.Patience = std::numeric_limits<int>::max();
   }
   return choice;
@@ -223,7 +231,8 @@ std::unique_ptr<LinearSolver> MakeSolver(const SolverChoice& choice, const Paral
   for (const SolverMethod next :
     { choice.Next, SolverMethod::Direct, SolverMethod::ConjugateGradient })
   {
-    if (std::find(order.begin(), order.end(), next) == order.end())
+    const bool isPossible = next != SolverMethod::Direct || choice.MayFactorize;
+    if (isPossible && std::find(order.begin(), order.end(), next) == order.end())
     {
       order.push_back(next);
     }

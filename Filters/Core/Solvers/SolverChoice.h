@@ -39,19 +39,20 @@ struct SolverTask
   /// of magnitude from triangle to triangle.
   bool AllowMultigrid = true;
   /// Several processes have a part of the surface each. They factorise a matrix only if all else
-  /// fails.
+  /// fails, and not with more than LargestReplicated vertices.
   bool IsDistributed = false;
   /// The solver is the preconditioner of another iteration (LinearSolver::Precondition), which has
   /// tried the diagonal already and needs a method that knows the whole matrix.
   bool IsPreconditioner = false;
 };
 
-/// A method, and whether others follow if it fails: Next, a factorisation, then conjugate
-/// gradients. Solvers of equal choices can stand in for each other.
+/// A method, and whether others follow if it fails: Next, a factorisation unless it has no room,
+/// then conjugate gradients. Solvers of equal choices can stand in for each other.
 struct SolverChoice
 {
   SolverMethod Method = SolverMethod::Direct; ///< not Automatic
   bool FallsBack = false;
+  bool MayFactorize = true;
   SolverMethod Next = SolverMethod::Direct;
   /// The number of iterations of the first solve with a matrix from which on Next is expected to be
   /// faster. That solve decides the method for the matrix: see ConvergenceForecast. 0: any number.
@@ -64,8 +65,8 @@ struct SolverChoice
   bool operator==(const SolverChoice& other) const
   {
     return this->Method == other.Method && this->FallsBack == other.FallsBack &&
-      this->Next == other.Next && this->Patience == other.Patience &&
-      this->ExpectedIterations == other.ExpectedIterations &&
+      this->MayFactorize == other.MayFactorize && this->Next == other.Next &&
+      this->Patience == other.Patience && this->ExpectedIterations == other.ExpectedIterations &&
       this->DiffusionNumber == other.DiffusionNumber;
   }
   bool operator!=(const SolverChoice& other) const { return !(*this == other); }
