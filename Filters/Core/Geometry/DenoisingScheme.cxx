@@ -52,8 +52,8 @@ constexpr WhitenessLimits LimitsOfResult = { 0.85, 1.1 };
 /// the noise: nothing from this mean square on, in squares of the noise. Impulsive noise, whose
 /// level is that of fewer vertices, and noise that is underestimated have up to 2.
 constexpr double LargestMeanSquare = 3.0;
-/// The mean displacement in an iteration of the second stage, in standard deviations of the noise,
-/// at which it ends. Only smooth surfaces come to it before the last iteration.
+/// The mean displacement of the vertices that may move in an iteration of the second stage, in
+/// standard deviations of the noise, at which it ends. Only smooth surfaces come to it before the last iteration.
 constexpr double SmallestStep = 0.0025;
 /// The pauses between measurements of the whiteness grow by one iteration after so many, since
 /// steps become smaller.
@@ -127,6 +127,9 @@ private:
   {
     const int count = this->Scheme.LinearIterations;
     const bool isCareful = this->Scheme.IsNoiseIndependent && count > 0;
+    const auto stay =
+      std::count_if(this->Fixed.begin(), this->Fixed.end(), [](char fixed) { return fixed != 0; });
+    const auto free = static_cast<double>(this->Moved.rows() - stay);
     Points careful = isCareful ? this->Moved : Points();
     Points before;
     Vector shares;
@@ -160,7 +163,7 @@ private:
             return step.norm();
           });
         this->TurnFlippedFaces(careful);
-        if (moved < SmallestStep * this->Noise * static_cast<double>(careful.rows()))
+        if (moved < SmallestStep * this->Noise * free)
         {
           break;
         }
