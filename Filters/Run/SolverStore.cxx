@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -24,9 +26,15 @@ void SolverStore::Configure(const ModelTraits& traits, const ParallelFor& parall
 void SolverStore::SetProcesses(std::shared_ptr<const Reduction> overProcesses, Index vertices)
 {
   this->OverProcesses = std::move(overProcesses);
-  this->AllVertices = static_cast<Index>(
-    this->OverProcesses->SumOverVertices(SerialFor(), vertices, [](Index) { return 1.0; }));
   this->Solvers = {};
+  double owned = 0.0;
+  for (Index i = 0; i < vertices; ++i)
+  {
+    owned += this->OverProcesses->Owns(i) ? 1.0 : 0.0;
+  }
+  // An abort would end a sum, but the surface is kept.
+  const std::vector<double> counts = this->OverProcesses->Gather({ owned });
+  this->AllVertices = static_cast<Index>(std::accumulate(counts.begin(), counts.end(), 0.0));
 }
 
 SolverChoice SolverStore::Choose(

@@ -588,7 +588,7 @@ TEST(Automatic, TakesASteadyStateForALongStep)
 /// Each process would have to factorise the whole matrix.
 TEST(Automatic, FactorisesOverProcessesOnlyIfNothingElseConverges)
 {
-  for (const Index vertices : { 100, 44000, 711000 })
+  for (const Index vertices : { 0, 100, 44000, 711000 })
   {
     for (const double diffusionNumber : { 0.1, 1.0, 1e4 })
     {
@@ -601,6 +601,7 @@ TEST(Automatic, FactorisesOverProcessesOnlyIfNothingElseConverges)
       const SolverChoice choice = ChooseSolver(SolverMethod::Automatic, task);
       EXPECT_NE(choice.Method, SolverMethod::Direct);
       EXPECT_TRUE(choice.FallsBack);
+      EXPECT_GE(choice.Patience, 0);
       EXPECT_TRUE(
         choice.Method == SolverMethod::Multigrid || choice.Next == SolverMethod::Multigrid);
       task.AllowMultigrid = false;

@@ -1,13 +1,16 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Foundation/Reduction.h"
 #include "Core/Models/InitialState.h"
 #include "Core/Models/Textures/TextureColors.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Meshes.h"
+#include "Run/SolverStore.h"
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <numeric>
 
 using namespace SurfaceDiffusion;
@@ -70,6 +73,14 @@ std::shared_ptr<TriangleMesh> ThreeSpheres(bool inPieces)
   }
   return mesh;
 }
+
+/// As if one of the processes was asked to stop.
+class Stopping : public Twin
+{
+public:
+  using Twin::Twin;
+  void Sum(double*, Index) const override { throw Aborted(); }
+};
 
 } // namespace
 
@@ -149,4 +160,11 @@ TEST(Reduction, ComponentsThatMeetElsewhereConserveTheirSumTogether)
     const Index last = mesh->NumberOfVertices() - 1;
     EXPECT_NEAR(u(last, 0), data.Start(last, 0), 1e-12);
   }
+}
+
+/// The surface is kept for the next update, and its processes with it.
+TEST(SolverStore, KeepsProcessesThatAreAskedToStop)
+{
+  SolverStore solvers;
+  EXPECT_NO_THROW(solvers.SetProcesses(std::make_shared<const Stopping>(3), 3));
 }

@@ -70,7 +70,7 @@ class ExpectedCosts
 public:
   explicit ExpectedCosts(const SolverTask& task)
     : Task(task)
-    , S(task.NumberOfVertices / SolverCosts::Size)
+    , S(std::max(task.NumberOfVertices, 1) / SolverCosts::Size)
     , C(std::max(DiffusionNumberOf(task), Measured::SmallestDiffusionNumber))
     , Digits(std::log(task.Tolerance) / std::log(1e-10))
   {
