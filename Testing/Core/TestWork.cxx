@@ -173,7 +173,7 @@ TEST(Work, OfTotalVariationIsFewIterationsForAllKindsOfData)
 }
 
 /// For surfaces of any size: 45 steps towards a fit at most, each with one report and those of one step
-/// of conjugate gradients; and eight minimisations of the variation of normals of twelve steps, each
+/// of conjugate gradients; and eight minimisations of the variation of normals of 13 steps, each
 /// with a fit of six.
 TEST(Work, OfMeshDenoisingIsFewStepsAndEightMinimisations)
 {
