@@ -52,9 +52,6 @@ constexpr WhitenessLimits LimitsOfResult = { 0.85, 1.1 };
 /// the noise: nothing from this mean square on, in squares of the noise. Impulsive noise, whose
 /// level is that of fewer vertices, and noise that is underestimated have up to 2.
 constexpr double LargestMeanSquare = 3.0;
-/// The mean displacement of the vertices that may move in an iteration of the second stage, in
-/// standard deviations of the noise, at which it ends. Only smooth surfaces come to it before the last iteration.
-constexpr double SmallestStep = 0.0025;
 /// The pauses between measurements of the whiteness grow by one iteration after so many, since
 /// steps become smaller.
 constexpr int IterationsPerPause = 4;
@@ -127,9 +124,6 @@ private:
   {
     const int count = this->Scheme.LinearIterations;
     const bool isCareful = this->Scheme.IsNoiseIndependent && count > 0;
-    const auto stay =
-      std::count_if(this->Fixed.begin(), this->Fixed.end(), [](char fixed) { return fixed != 0; });
-    const auto free = static_cast<double>(this->Moved.rows() - stay);
     Points careful = isCareful ? this->Moved : Points();
     Points before;
     Vector shares;
@@ -155,18 +149,9 @@ private:
       this->TurnFlippedFaces(this->Moved);
       if (isCareful)
       {
-        const double moved = Sum(this->Parallel, static_cast<Index>(careful.rows()),
-          [&](Index k)
-          {
-            const Eigen::RowVector3d step = this->Moved.row(k) - before.row(k);
-            careful.row(k) += shares[k] * step;
-            return step.norm();
-          });
+        ForEach(this->Parallel, static_cast<Index>(careful.rows()),
+          [&](Index k) { careful.row(k) += shares[k] * (this->Moved.row(k) - before.row(k)); });
         this->TurnFlippedFaces(careful);
-        if (moved < SmallestStep * this->Noise * free)
-        {
-          break;
-        }
       }
     }
     if (isCareful)

@@ -28,7 +28,7 @@ struct DenoisingScheme
   double Fidelity = 0.09; ///< of the fit, for noise of 0.3 h
   /// The second stage: FitLinearNormals(), which regains the curvature that the first flattened.
   NormalFilterSettings LinearFilter = { 0.3, 1.5 };
-  int LinearIterations = 30; ///< fewer where they hardly move the surface any more
+  int LinearIterations = 30;
   double LinearFidelity = 0.02; ///< the same
   double TangentialFidelity = 1.0; ///< of the fits of the first two stages
   /// Whether the fidelity and the second stage follow the displacements around each vertex: those of

@@ -25,8 +25,7 @@ class FallBackSolver : public LinearSolver
 {
 public:
   /// factor: the number of the method that is a factorisation, or that of methods if there is none.
-  /// overProcesses: over which the
-  /// matrices are accumulated.
+  /// overProcesses: over which the matrices are accumulated.
   FallBackSolver(std::vector<std::unique_ptr<LinearSolver>> methods, std::size_t factor,
     const SolverChoice& choice, const ParallelFor& parallel,
     std::shared_ptr<const Reduction> overProcesses)

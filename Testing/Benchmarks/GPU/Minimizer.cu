@@ -16,12 +16,12 @@ constexpr double PenaltyFactor = 28.0;
 constexpr double StartOfGrowth = 6.0;
 constexpr double GrowthFactor = 0.35;
 constexpr double SquaredEdgeOverHeight = 4.0 / 3.0;
-constexpr int MostInnerIterations = 20;
+constexpr int MostInnerIterations = 60;
 constexpr int IterationsPerCheck = 10;
 constexpr int EarlyMeasurement = 15;
 constexpr float LargestBalanced = 0.6F;
 constexpr float SmallestBalanced = 0.15F;
-constexpr float MostScale = 8.0F;
+constexpr float MostScale = 16.0F;
 
 struct Shape
 {
