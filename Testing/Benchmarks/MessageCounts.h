@@ -5,8 +5,8 @@
 namespace SurfaceDiffusion
 {
 
-/// What this process has told MPI so far. The program that links MessageCounts.cxx has MPI's
-/// functions replaced by ones that count and call the originals (the profiling interface of MPI).
+/// The messages and bytes that this process has sent so far. MessageCounts.cxx counts them through
+/// the profiling interface of MPI: it defines MPI_Send and the others, which call PMPI_Send.
 struct MessageCounts
 {
   double Messages = 0.0; ///< to one other process

@@ -11,8 +11,8 @@
 /// For conjugate gradients with the Jacobi preconditioner and, if the model allows it, with
 /// multigrid, or for the solver that Automatic selects alone, the program prints: seconds of the
 /// surface (identification of interface vertices, assembly), of the first step with its set-up and
-/// of a second step alone, iterations of both steps, what the
-/// busiest process sends in an iteration of the second step, and its memory.
+/// of a second step alone, iterations of both steps, what the busiest process sends in an iteration
+/// of the second step, and its memory.
 #include "MessageCounts.h"
 
 #include "vtkFVMHeatFilter.h"
