@@ -56,22 +56,33 @@ namespace
 
 constexpr int N = 24;
 
-/// A piece of a square of n columns with ids, vectors and a mask that do not depend on the
-/// decomposition. sheared: with obtuse angles.
-vtkSmartPointer<vtkPolyData> WithData(
-  vtkSmartPointer<vtkPolyData> piece, bool sheared = false, int n = N)
+/// Gives the points of a piece of a square of n columns global ids that do not depend on the
+/// decomposition, and calls move(id, coordinates) to change the coordinates.
+template <typename Move>
+vtkSmartPointer<vtkIdTypeArray> NumberAndMove(vtkPolyData* piece, int n, const Move& move)
 {
-  vtkNew<vtkIdTypeArray> ids;
+  auto ids = vtkSmartPointer<vtkIdTypeArray>::New();
   ids->SetName("ids");
   for (vtkIdType i = 0; i < piece->GetNumberOfPoints(); ++i)
   {
     double x[3];
     piece->GetPoint(i, x);
-    ids->InsertNextValue(std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n));
-    x[0] += sheared ? -0.8 * x[1] : 0.0;
+    const vtkIdType id = std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n);
+    ids->InsertNextValue(id);
+    move(id, x);
     piece->GetPoints()->SetPoint(i, x);
   }
   piece->GetPointData()->SetGlobalIds(ids);
+  return ids;
+}
+
+/// A piece of a square of n columns with ids, vectors and a mask that do not depend on the
+/// decomposition. sheared: with obtuse angles.
+vtkSmartPointer<vtkPolyData> WithData(
+  vtkSmartPointer<vtkPolyData> piece, bool sheared = false, int n = N)
+{
+  const auto ids =
+    NumberAndMove(piece, n, [&](vtkIdType, double* x) { x[0] += sheared ? -0.8 * x[1] : 0.0; });
   AddPointArray(piece, "v", 3,
     [&](vtkIdType i, int k) { return (k == 0 ? 0.5 : 0.0) + Rough(ids->GetValue(i), k); });
   AddPointArray(piece, "rough", 1, [&](vtkIdType i, int k) { return Rough(ids->GetValue(i), k); });
@@ -117,10 +128,11 @@ struct Case
   int Columns = N; ///< of the square that they solve on
 };
 
-/// On a square that is too large for every process to solve a coarser level of it as a whole.
+/// On a square that is too large for every process to solve a coarser level of it as a whole, and
+/// for Automatic to gather it.
 Case WithLevels(Case of)
 {
-  of.Columns = 96;
+  of.Columns = 104;
   return of;
 }
 
@@ -155,6 +167,12 @@ std::vector<Case> Cases()
   using TV = vtkIntrinsicTVFilter;
   return {
     MakeCase<Heat>("heat", "fDiffused", "f", 5),
+    WithLevels(MakeCase<Heat>("heat, automatic", "fDiffused", "f", 5,
+      [](Heat* f)
+      {
+        f->SetSolverToAutomatic();
+        f->SetTimeStep(100.0);
+      })),
     MakeCase<Turing>("turing", "u1", "", 20),
     MakeCase<Turing>("turing, first order", "Texture", "", 20,
       [](Turing* f)
@@ -515,18 +533,13 @@ vtkSmartPointer<vtkPolyData> Needles(int begin, int end)
     }
   }
   auto needles = Strip(begin, end, n);
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("ids");
-  for (vtkIdType i = 0; i < needles->GetNumberOfPoints(); ++i)
-  {
-    double x[3];
-    needles->GetPoint(i, x);
-    const auto id = static_cast<int>(std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n));
-    ids->InsertNextValue(id);
-    needles->GetPoints()->SetPoint(
-      i, x[0] + 0.11 * random[id][0], 0.1 * (x[1] + 0.11 * random[id][1]), 0.0);
-  }
-  needles->GetPointData()->SetGlobalIds(ids);
+  const auto ids = NumberAndMove(needles, n,
+    [&](vtkIdType id, double* x)
+    {
+      x[0] += 0.11 * random[id][0];
+      x[1] = 0.1 * (x[1] + 0.11 * random[id][1]);
+      x[2] = 0.0;
+    });
   AddPointArray(
     needles, "v", 2, [&](vtkIdType i, int k) { return random[ids->GetValue(i)][2 + k]; });
   return needles;
@@ -554,19 +567,15 @@ TEST(PiecesTogether, DampStepsThatWouldIncreaseTheEnergyAsTheWholeSurfaceDoes)
 vtkSmartPointer<vtkPolyData> Wedge(int begin, int end, int n)
 {
   auto wedge = Strip(begin, end, n);
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("ids");
-  for (vtkIdType i = 0; i < wedge->GetNumberOfPoints(); ++i)
-  {
-    double x[3];
-    wedge->GetPoint(i, x);
-    ids->InsertNextValue(std::lround(x[0] * n) * (n + 1) + std::lround(x[1] * n));
-    const double longitude = 6.0 * x[0];
-    const double latitude = std::acos(-1.0) * (x[1] * n + 0.5) / (n + 1);
-    wedge->GetPoints()->SetPoint(i, std::cos(longitude) * std::sin(latitude),
-      std::sin(longitude) * std::sin(latitude), std::cos(latitude));
-  }
-  wedge->GetPointData()->SetGlobalIds(ids);
+  NumberAndMove(wedge, n,
+    [n](vtkIdType, double* x)
+    {
+      const double longitude = 6.0 * x[0];
+      const double fromPole = std::acos(-1.0) * (x[1] * n + 0.5) / (n + 1);
+      x[0] = std::cos(longitude) * std::sin(fromPole);
+      x[1] = std::sin(longitude) * std::sin(fromPole);
+      x[2] = std::cos(fromPole);
+    });
   return wedge;
 }
 
