@@ -126,7 +126,9 @@ TEST(SinglePrecisionSolver, GivesTheSameBitsOnAnyThreadsAndWithAnyColumns)
   const auto solve = [&](const ParallelFor& parallel, int first, int count)
   {
     SinglePrecisionSolver solver(parallel);
-    solver.SetMatrix(matrix, inverse);
+    StrongLines lines(parallel);
+    lines.Set(matrix, inverse);
+    solver.SetMatrix(matrix, inverse, lines);
     std::vector<SinglePrecisionSolver::Column> columns(count);
     for (int c = 0; c < count; ++c)
     {
@@ -156,7 +158,9 @@ TEST(SinglePrecisionSolver, LeavesAColumnThatItCannotSolve)
   matrix.makeCompressed();
   const Values r = AnyValues(100, 1);
   SinglePrecisionSolver solver(SerialFor());
-  solver.SetMatrix(matrix, Vector::Ones(100));
+  StrongLines lines(SerialFor());
+  lines.Set(matrix, Vector::Ones(100));
+  solver.SetMatrix(matrix, Vector::Ones(100), lines);
   std::vector<SinglePrecisionSolver::Column> columns(1);
   columns[0].Length = r.norm();
   columns[0].Reduction = 1e-4;

@@ -20,15 +20,20 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Independent columns, preconditioned with the diagonal or with multigrid.
-struct ColumnSystem : MatrixSystem
+/// Independent columns, preconditioned with lines or with multigrid.
+struct ColumnSystem : LineSystem
 {
-  Multigrid* Hierarchy; ///< null: the diagonal
+  Multigrid* Hierarchy; ///< null: lines
   std::vector<double>& Scales; ///< work, one number per column
 
-  bool HasPreconditioner() const { return this->Hierarchy != nullptr; }
+  bool HasPreconditioner() const { return this->Hierarchy || LineSystem::HasPreconditioner(); }
   void Precondition(const Values& r, const std::vector<double>& squares, Values& z) const
   {
+    if (!this->Hierarchy)
+    {
+      LineSystem::Precondition(r, squares, z);
+      return;
+    }
     for (std::size_t c = 0; c < squares.size(); ++c)
     {
       this->Scales[c] = squares[c] > 0.0 ? 1.0 / std::sqrt(squares[c]) : 1.0;
@@ -46,6 +51,7 @@ public:
     , KeptProcesses(std::move(overProcesses))
     , OverProcesses(*this->KeptProcesses)
     , Hierarchy(std::move(hierarchy))
+    , Lines(parallel)
     , Single(parallel, this->OverProcesses)
   {
   }
@@ -65,10 +71,16 @@ public:
     else
     {
       this->InvertDiagonal(matrix);
+      this->Lines.Set(matrix, this->InverseDiagonal, this->OverProcesses);
+      const double alongLines = this->OverProcesses.Sum(
+        Sum(this->Parallel, static_cast<Index>(this->Lines.Vertices().size()),
+          [&](Index k)
+          { return this->Lines.Share(k) / this->InverseDiagonal[this->Lines.Vertices()[k]]; }));
+      this->Share = this->RowSums[0] / (this->RowSums[1] - alongLines);
     }
     if (this->Share >= SmallestShareOfOnePass)
     {
-      this->Single.SetMatrix(matrix, this->InverseDiagonal);
+      this->Single.SetMatrix(matrix, this->InverseDiagonal, this->Lines);
     }
     progress.Report(1.0);
   }
@@ -85,7 +97,7 @@ public:
     Resize(z, r.rows(), r.cols());
     if (!this->Hierarchy)
     {
-      ForEach(this->Parallel, n, [&](Index i) { z.row(i) = this->InverseDiagonal[i] * r.row(i); });
+      this->Lines.Precondition(this->InverseDiagonal, r, z);
       return;
     }
     std::vector<double> squares(r.cols());
@@ -104,16 +116,16 @@ public:
 
 private:
   /// (1 + lambda dt) M + dt K has the row sums of its first term, whose share in the diagonal
-  /// measures the condition: 2e-3 is the diffusion number 150. Below, rounding to single precision
+  /// measures the condition: 7e-4 is the diffusion number 300. Below, rounding to single precision
   /// costs more iterations than their speed gains, unless one pass reaches the tolerance.
-  static constexpr double SmallestShare = 2e-3;
+  static constexpr double SmallestShare = 7e-4;
   static constexpr double SmallestShareOfOnePass = 1e-4;
   static constexpr double MostOfOnePass = 1e-5;
   /// From here on (the diffusion number 3), round-off of single precision does no harm to a
   /// reduction by MostOfOnePass either; otherwise it is 1e-4.
   static constexpr double SmallestShareOfLongPasses = 0.05;
 
-  /// InverseDiagonal and Share, in one pass over the matrix.
+  /// InverseDiagonal and the sums of the rows and of the diagonal, in one pass over the matrix.
   void InvertDiagonal(const SparseMatrix& matrix)
   {
     const Index n = static_cast<Index>(matrix.rows());
@@ -138,7 +150,6 @@ private:
       });
     this->RowSums.Reduce(this->OverProcesses);
     this->TakeInverse();
-    this->Share = this->RowSums[0] / this->RowSums[1];
   }
 
   /// InverseDiagonal, from the diagonal of the process.
@@ -151,8 +162,9 @@ private:
 
   ColumnSystem System()
   {
-    return { { *this->Matrix, this->InverseDiagonal, this->OverProcesses }, this->Hierarchy.get(),
-      this->Scales };
+    return { { *this->Matrix, this->InverseDiagonal, this->Lines, this->Parallel,
+               this->OverProcesses },
+      this->Hierarchy.get(), this->Scales };
   }
 
   template <int K>
@@ -427,9 +439,10 @@ private:
   std::unique_ptr<Multigrid> Hierarchy;
   const SparseMatrix* Matrix = nullptr;
   Vector InverseDiagonal;
+  StrongLines Lines; ///< without a hierarchy
   SinglePrecisionSolver Single;
   bool HasStoppedEarly = false; ///< before iterations in double precision
-  double Share = 0.0; ///< of row sums in the diagonal
+  double Share = 0.0; ///< of row sums in the diagonal without entries along lines
   ColumnSums RowSums;
   std::vector<SinglePrecisionSolver::Column> Corrections;
   Values Residual; ///< in Work.Unit

@@ -5,6 +5,7 @@
 #include "Core/Foundation/ColumnSums.h"
 #include "Core/Foundation/Resize.h"
 #include "Core/Operators/SparseProduct.h"
+#include "Core/Solvers/StrongLines.h"
 
 #include <vector>
 
@@ -68,6 +69,27 @@ struct MatrixSystem : SystemDefaults
     SurfaceDiffusion::MultiplyRows<K>(this->Matrix, x, y, begin, end);
   }
   double Scale(Index i, int c, const double* r) const { return this->InverseDiagonal[i] * r[c]; }
+};
+
+/// A stored matrix with the preconditioner StrongLines, which is its diagonal if there are no lines.
+struct LineSystem : MatrixSystem
+{
+  LineSystem(const SparseMatrix& matrix, const Vector& inverseDiagonal, const StrongLines& lines,
+    const ParallelFor& parallel, const Reduction& overProcesses = Reduction::Serial())
+    : MatrixSystem(matrix, inverseDiagonal, overProcesses)
+    , Lines(lines)
+    , Parallel(parallel)
+  {
+  }
+
+  const StrongLines& Lines; ///< of the matrix
+  const ParallelFor& Parallel;
+
+  bool HasPreconditioner() const { return !this->Lines.IsEmptyEverywhere(); }
+  void Precondition(const Values& r, const std::vector<double>& /*squares*/, Values& z) const
+  {
+    this->Lines.Precondition(this->InverseDiagonal, r, z);
+  }
 };
 
 /// Vectors and numbers of conjugate gradients, kept from solve to solve only so that time steps do

@@ -3,6 +3,7 @@
 #include "Core/Solvers/FallBackSolver.h"
 
 #include "Core/Operators/SparsePattern.h"
+#include "Core/Solvers/StrongLines.h"
 
 #include <algorithm>
 #include <cmath>
@@ -62,7 +63,7 @@ void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor
     this->MeasureRows(matrix);
     const bool hasNeedles = HasUnresolvedNeedles(
       this->Diagonal, this->RowSums, this->Limits.Tolerance, this->Parallel, *this->OverProcesses);
-    const double forecast = this->TakeForecast();
+    const double forecast = this->TakeForecast(matrix);
     const bool isHopeless = forecast > this->Patience;
     begin = isHopeless ? 1 : 0;
     this->Needed =
@@ -118,12 +119,14 @@ void FallBackSolver::MeasureRows(const SparseMatrix& matrix)
   this->OverProcesses->Accumulate(this->RowSums);
 }
 
-/// Of conjugate gradients, from MeasureRows(), whose row sums are lost: they need the iterations of
-/// even meshes on which the diffusion number is that of the stiffest fiftieth of the vertices. Few
-/// stiffer ones only add few eigenvalues, which are found one by one. 0: no forecast.
-double FallBackSolver::TakeForecast()
+/// Of conjugate gradients, from MeasureRows(), whose results are lost: they need the iterations of
+/// even meshes on which the diffusion number is that of the stiffest fiftieth of the vertices, but
+/// for entries along lines. Few stiffer ones only add few eigenvalues, which are found one by one.
+/// 0: no forecast.
+double FallBackSolver::TakeForecast(const SparseMatrix& matrix)
 {
-  constexpr double perDiffusionNumber = 4.0; // dt K_ii / M_ii on an even mesh
+  // dt K_ii / M_ii of these vertices on the surfaces of the model; 4 on an even mesh
+  constexpr double perDiffusionNumber = 27.0;
   constexpr double exponent = 0.4; // of the diffusion number in the model of iterations
   constexpr double stiffest = 0.02; // of the vertices
   if (this->ExpectedIterations == 0.0)
@@ -131,6 +134,10 @@ double FallBackSolver::TakeForecast()
     return 0.0;
   }
   Vector& stiffness = this->RowSums;
+  StrongLines lines(this->Parallel);
+  lines.Set(matrix, this->Diagonal.cwiseInverse(), *this->OverProcesses);
+  ForEach(this->Parallel, static_cast<Index>(lines.Vertices().size()),
+    [&](Index k) { this->Diagonal[lines.Vertices()[k]] *= 1.0 - lines.Share(k); });
   ForEach(this->Parallel, static_cast<Index>(stiffness.size()),
     [&](Index i)
     {
@@ -139,7 +146,7 @@ double FallBackSolver::TakeForecast()
     });
   const double found = this->OverProcesses->QuantileInPlace(stiffness, 1.0 - stiffest);
   const double ratio = found / (perDiffusionNumber * this->DiffusionNumber);
-  return this->ExpectedIterations * std::pow(std::max(ratio, 1.0), exponent);
+  return this->ExpectedIterations * std::pow(ratio, exponent);
 }
 
 SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMonitor& progress)

@@ -60,7 +60,7 @@ private:
       this->IsUndecided && this->Patience > 0;
   }
   double RoundOff(const Values& b, const Values& x) const;
-  double TakeForecast();
+  double TakeForecast(const SparseMatrix& matrix);
   void MeasureRows(const SparseMatrix& matrix);
   void Decide(std::size_t method, bool isGood);
 

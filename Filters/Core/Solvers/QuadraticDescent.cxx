@@ -66,10 +66,11 @@ void QuadraticDescent::SetMatrix(
   reduction.Accumulate(this->InverseDiagonal);
   ForEach(
     this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i]; });
+  this->Lines.Set(matrix, this->InverseDiagonal, reduction);
   this->HasSingle = this->IsSingle && reduction.IsSerial();
   if (this->HasSingle)
   {
-    this->Single.SetMatrix(matrix, this->InverseDiagonal);
+    this->Single.SetMatrix(matrix, this->InverseDiagonal, this->Lines);
   }
 }
 
@@ -116,8 +117,9 @@ void QuadraticDescent::Improve(Values& x, double reduction, int maximumNumberOfI
       reduction, maximumNumberOfIterations);
     return;
   }
-  this->Improve(MatrixSystem(*this->Matrix, this->InverseDiagonal, *this->OverProcesses), x,
-    reduction, maximumNumberOfIterations);
+  this->Improve(LineSystem(*this->Matrix, this->InverseDiagonal, this->Lines, this->Parallel,
+                  *this->OverProcesses),
+    x, reduction, maximumNumberOfIterations);
 }
 
 template <typename System>

@@ -9,8 +9,8 @@
 namespace SurfaceDiffusion
 {
 
-/// Minimises 1/2 x.Ax - b.x by a few conjugate gradient iterations with Jacobi preconditioner, as
-/// the inner iteration of an outer one that changes b a little from call to call and carries x
+/// Minimises 1/2 x.Ax - b.x by a few conjugate gradient iterations with the preconditioner
+/// StrongLines, with shifts that of Jacobi, as the inner iteration of an outer one that changes b a little from call to call and carries x
 /// along. Unlike a LinearSolver it keeps the residual between calls, so that no product is spent on
 /// computing it.
 class QuadraticDescent
@@ -18,6 +18,7 @@ class QuadraticDescent
 public:
   explicit QuadraticDescent(const ParallelFor& parallel = SerialFor())
     : Parallel(parallel)
+    , Lines(parallel)
     , Single(parallel)
   {
   }
@@ -56,6 +57,7 @@ private:
   const Reduction* OverProcesses = &Reduction::Serial();
   Vector InverseDiagonal;
   Values InverseDiagonals; ///< with shifts, one column for each
+  StrongLines Lines; ///< without shifts
   ConjugateGradientWork Work;
   bool IsSingle = false;
   SinglePrecisionSolver Single; ///< of the matrix if HasSingle

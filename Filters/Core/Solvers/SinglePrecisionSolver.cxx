@@ -27,12 +27,18 @@ struct SinglePrecisionSolver::Group
   int Count;
 };
 
-void SinglePrecisionSolver::SetMatrix(const SparseMatrix& matrix, const Vector& inverseDiagonal)
+void SinglePrecisionSolver::SetMatrix(
+  const SparseMatrix& matrix, const Vector& inverseDiagonal, StrongLines& lines)
 {
   this->Roots.resize(inverseDiagonal.size());
   ForEach(this->Parallel, static_cast<Index>(inverseDiagonal.size()),
     [&](Index i) { this->Roots[i] = std::sqrt(inverseDiagonal[i]); });
   this->Matrix.Set(matrix, this->Roots);
+  this->Lines = lines.IsEmpty() ? nullptr : &lines;
+  const std::vector<Index>& vertices = lines.Vertices();
+  this->PlacesOnLines.resize(vertices.size());
+  ForEach(this->Parallel, static_cast<Index>(vertices.size()),
+    [&](Index k) { this->PlacesOnLines[k] = this->Matrix.PlacesOfRows()[vertices[k]]; });
 }
 
 /// act(group, solved) for the groups in which a column is to be solved.
@@ -124,28 +130,25 @@ bool SinglePrecisionSolver::Descend(Values& r, const std::vector<double>& length
   return isResolved;
 }
 
-/// R = D^-1/2 r, P = R + beta P, Y = 0.
+/// R = D^-1/2 r, P = B R + beta P, Y = 0.
 void SinglePrecisionSolver::Take(const Values& r, const Group& group)
 {
   double scale[Group::Most];
-  float beta[Group::Most];
+  bool solved[Group::Most];
+  double products[Group::Most] = {};
   for (int c = 0; c < group.Count; ++c)
   {
     Column& column = group.Columns[c];
     scale[c] = 0.0;
-    if (column.Reduction < 1.0)
+    solved[c] = column.Reduction < 1.0;
+    if (solved[c])
     {
-      const double last = column.Square;
       column.FirstLength = column.FirstLength > 0.0 ? column.FirstLength : column.Length;
       scale[c] = 1.0 / column.FirstLength;
       column.Square = std::pow(column.Length * scale[c], 2.0);
-      const double turn = last > 0.0 ? column.Square / last : 0.0;
-      beta[c] = static_cast<float>(turn);
-      column.DirectionSquare = column.Square + turn * turn * column.DirectionSquare;
     }
   }
   const std::vector<Index>& rows = this->Matrix.RowsInOrder();
-  float* const directions = this->P.data() + static_cast<std::size_t>(group.First) * rows.size();
   ForEach(this->Parallel, static_cast<Index>(rows.size()),
     [&](Index place)
     {
@@ -153,17 +156,42 @@ void SinglePrecisionSolver::Take(const Values& r, const Group& group)
       for (int c = 0; c < group.Count; ++c)
       {
         const std::size_t at = c * rows.size() + place;
-        const bool takesPart = row >= 0 && scale[c] > 0.0;
+        const bool takesPart = row >= 0 && solved[c];
         this->R[at] = takesPart
           ? static_cast<float>(this->Roots[row] * r(row, group.First + c) * scale[c])
           : 0.0F;
         this->Y[at] = 0.0F;
-        if (scale[c] > 0.0)
+      }
+    });
+  this->CorrectByLines(group, solved, products);
+  this->OverProcesses.Sum(products, group.Count);
+  float beta[Group::Most] = {};
+  for (int c = 0; c < group.Count; ++c)
+  {
+    Column& column = group.Columns[c];
+    if (solved[c])
+    {
+      const double last = column.Rho;
+      column.Rho = column.Square + products[c];
+      const double turn = last > 0.0 ? column.Rho / last : 0.0;
+      beta[c] = static_cast<float>(turn);
+      column.DirectionSquare = column.Rho + turn * turn * column.DirectionSquare;
+    }
+  }
+  float* const directions = this->P.data() + static_cast<std::size_t>(group.First) * rows.size();
+  ForEach(this->Parallel, static_cast<Index>(rows.size()),
+    [&](Index place)
+    {
+      for (int c = 0; c < group.Count; ++c)
+      {
+        const std::size_t at = c * rows.size() + place;
+        if (solved[c])
         {
           directions[at] = beta[c] > 0.0F ? this->R[at] + beta[c] * directions[at] : this->R[at];
         }
       }
     });
+  this->AddCorrections(group, solved);
 }
 
 /// Reduce the residuals of the columns that are to be solved, or find that they cannot be.
@@ -176,6 +204,7 @@ int SinglePrecisionSolver::Iterate(const Group& group, int maximumNumberOfIterat
   bool active[Group::Most];
   double goals[Group::Most] = {};
   double sums[Group::Most] = {};
+  double products[Group::Most] = {};
   float alpha[Group::Most] = {};
   float beta[Group::Most] = {};
   for (int c = 0; c < count; ++c)
@@ -193,43 +222,45 @@ int SinglePrecisionSolver::Iterate(const Group& group, int maximumNumberOfIterat
     for (int c = 0; c < count; ++c)
     {
       const Column& column = group.Columns[c];
-      const double step = active[c] ? column.Square / sums[c] : 0.0;
+      const double step = active[c] ? column.Rho / sums[c] : 0.0;
       const bool isBounded = sums[c] > SmallestResolved * column.DirectionSquare;
       solved[c] = solved[c] && (!active[c] || (isBounded && std::isfinite(step)));
       active[c] = active[c] && solved[c];
       alpha[c] = active[c] ? static_cast<float>(step) : 0.0F;
     }
     this->Matrix.Subtract(count, alpha, this->Q.data(), this->R.data(), sums);
-    this->CountOnce(count, this->R.data(), sums);
+    this->CorrectByLines(group, active, products);
+    this->CountOnce(count, this->R.data(), sums, products);
     double done = 0.99;
     double residual = 0.0;
     isFinished = true;
     for (int c = 0; c < count; ++c)
     {
-      double& square = group.Columns[c].Square;
+      Column& column = group.Columns[c];
       if (active[c])
       {
         // The residual falls by about a constant factor per iteration.
-        const double left = std::log(goals[c] / sums[c]) / std::log(group.Columns[c].Reduction);
+        const double left = std::log(goals[c] / sums[c]) / std::log(column.Reduction);
         done = std::min(done, 1.0 + 0.5 * left);
         active[c] = sums[c] > goals[c];
-        const double turn = sums[c] / square;
+        const double rho = sums[c] + products[c];
+        const double turn = rho / column.Rho;
         beta[c] = static_cast<float>(turn);
         if (active[c])
         {
-          square = sums[c];
-          // The residual and the last direction are orthogonal.
-          double& direction = group.Columns[c].DirectionSquare;
-          direction = square + turn * turn * direction;
+          column.Square = sums[c];
+          column.Rho = rho;
+          // B r and the last direction are orthogonal in B^-1.
+          column.DirectionSquare = rho + turn * turn * column.DirectionSquare;
         }
         isFinished = isFinished && !active[c];
-        const Column& column = group.Columns[c];
         residual =
           std::max(residual, std::sqrt(sums[c]) * column.FirstLength / column.ReferenceLength);
       }
     }
     isFinished = (forecast && forecast->Update(iterations, residual)) || isFinished;
     this->Matrix.Turn(count, alpha, beta, active, this->R.data(), this->Y.data(), p);
+    this->AddCorrections(group, active);
     if (iterations % 8 == 0)
     {
       progress.Report(std::max(0.0, done));
@@ -237,6 +268,39 @@ int SinglePrecisionSolver::Iterate(const Group& group, int maximumNumberOfIterat
   }
   progress.Report(1.0);
   return iterations;
+}
+
+/// Corrections = B R - R on lines; products[c] = R . (B R - R) of the process.
+void SinglePrecisionSolver::CorrectByLines(const Group& group, const bool* solved, double* products)
+{
+  const std::size_t count = this->PlacesOnLines.size();
+  this->Corrections.resize(count * group.Count);
+  for (int c = 0; c < group.Count; ++c)
+  {
+    products[c] = this->Lines && solved[c]
+      ? this->Lines->Correct(this->PlacesOnLines, this->R.data() + c * this->Matrix.PaddedRows(),
+          this->Corrections.data() + c * count)
+      : 0.0;
+  }
+}
+
+/// P += B R - R
+void SinglePrecisionSolver::AddCorrections(const Group& group, const bool* goesOn)
+{
+  const std::size_t count = this->PlacesOnLines.size();
+  float* const p =
+    this->P.data() + static_cast<std::size_t>(group.First) * this->Matrix.PaddedRows();
+  for (int c = 0; c < group.Count; ++c)
+  {
+    if (goesOn[c])
+    {
+      ForEach(this->Parallel, static_cast<Index>(count),
+        [&](Index k) {
+          p[c * this->Matrix.PaddedRows() + this->PlacesOnLines[k]] +=
+            this->Corrections[c * count + k];
+        });
+    }
+  }
 }
 
 /// Q = A p and p . Q over all processes, from those of the process. Matrix has added the unit
@@ -278,9 +342,13 @@ void SinglePrecisionSolver::Accumulate(int columns, const float* p, double* sums
   this->OverProcesses.Sum(sums, columns);
 }
 
-/// sums[c] = r . r over all processes, from those of the process.
-void SinglePrecisionSolver::CountOnce(int columns, const float* r, double* sums)
+/// sums[c] = r . r and products[c] over all processes, from those of the process.
+void SinglePrecisionSolver::CountOnce(int columns, const float* r, double* sums, double* products)
 {
+  if (this->OverProcesses.IsSerial())
+  {
+    return;
+  }
   const std::vector<Index>& places = this->Matrix.PlacesOfRows();
   for (const Index vertex : this->OverProcesses.InterfaceVertices())
   {
@@ -290,7 +358,11 @@ void SinglePrecisionSolver::CountOnce(int columns, const float* r, double* sums)
       sums[c] -= entry * entry;
     }
   }
-  this->OverProcesses.Sum(sums, columns);
+  double both[2 * Group::Most];
+  std::copy_n(products, columns, std::copy_n(sums, columns, both));
+  this->OverProcesses.Sum(both, 2 * columns);
+  std::copy_n(both, columns, sums);
+  std::copy_n(both + columns, columns, products);
 }
 
 /// x += D^-1/2 Y, and r = D^1/2 R unless it is null.

@@ -6,14 +6,15 @@
 #include "Core/Foundation/Reduction.h"
 #include "Core/Solvers/ConvergenceForecast.h"
 #include "Core/Solvers/SlicedMatrix.h"
+#include "Core/Solvers/StrongLines.h"
 
 #include <vector>
 
 namespace SurfaceDiffusion
 {
 
-/// Conjugate gradients with Jacobi preconditioner in single precision, for A x = b with a symmetric
-/// positive definite matrix A: they need half the memory traffic of double precision. Now and then
+/// Conjugate gradients with the preconditioner StrongLines in single precision, for A x = b with a
+/// symmetric positive definite matrix A: they need half the memory traffic of double precision. Now and then
 /// the caller measures the residual in double precision, and the iterations continue from it along
 /// their last direction, so that they converge as in double precision (M. Clark, R. Babich,
 /// K. Barros, R. Brower, C. Rebbi, Comput. Phys. Commun. 181, 2010: reliable updates).
@@ -29,8 +30,8 @@ public:
   {
   }
 
-  /// inverseDiagonal: that of the matrix, D^-1.
-  void SetMatrix(const SparseMatrix& matrix, const Vector& inverseDiagonal);
+  /// inverseDiagonal: that of the matrix, D^-1. lines: of the matrix, kept by the caller.
+  void SetMatrix(const SparseMatrix& matrix, const Vector& inverseDiagonal, StrongLines& lines);
 
   /// A column of x and its iteration.
   struct Column
@@ -42,7 +43,8 @@ public:
     /// Of the first residual of the iteration, the unit of single precision; 0: it begins.
     double FirstLength = 0.0;
     // Squared lengths before the last step, in the unit of single precision:
-    double Square = 0.0; ///< of the residual
+    double Square = 0.0; ///< of the residual r
+    double Rho = 0.0; ///< r . B r with the preconditioner B; without lines it is Square
     double DirectionSquare = 0.0;
   };
 
@@ -68,12 +70,17 @@ private:
     const ProgressMonitor& progress, ConvergenceForecast* forecast);
   void Add(const Group& group, const bool* solved, Values& x, Values* r);
 
+  void CorrectByLines(const Group& group, const bool* solved, double* products);
+  void AddCorrections(const Group& group, const bool* goesOn);
   void Accumulate(int columns, const float* p, double* sums);
-  void CountOnce(int columns, const float* r, double* sums);
+  void CountOnce(int columns, const float* r, double* sums, double* products);
 
   const ParallelFor& Parallel;
   const Reduction& OverProcesses;
   SlicedMatrix Matrix;
+  StrongLines* Lines = nullptr; ///< null if there are none
+  std::vector<Index> PlacesOnLines; ///< in the order of Matrix, of the vertices on lines
+  std::vector<float> Corrections; ///< B r - r there, of the columns of a group
   Vector Roots; ///< D^-1/2
   std::vector<float> R, Q, Y; ///< of a few columns, in the order of Matrix
   std::vector<Column> Descents; ///< work

@@ -23,7 +23,7 @@ namespace Measured
 constexpr double SmallestIterative = 5000.0;
 constexpr double LargestToleranceOfSmall = 1e-5;
 
-constexpr double LongestSingleStep = 150.0; // c, of conjugate gradients in single precision
+constexpr double LongestSingleStep = 300.0; // c, of conjugate gradients in single precision
 constexpr double SmallestToleranceOfLongSteps = 1e-5;
 
 constexpr double AnisotropicCycles = 0.2; // x min(anisotropy, c) to this power
@@ -41,6 +41,8 @@ constexpr double Hardness = 30.0;
 // multigrid not before that.
 constexpr double LeastOfExpected = 1.5;
 constexpr double LeastOfNext = 1.25; // of the time of the next method
+// Where the matrix lets forecast the iterations: those of an even mesh, of the expected ones.
+constexpr double EvenMesh = 0.5;
 // Parametric surfaces have most needles, and their factor takes longer than that of the scanned
 // surfaces of SolverCosts.h.
 constexpr double FactorOfParametric = 1.7;
@@ -140,36 +142,46 @@ SolverChoice FindFastest(const SolverTask& task)
     return choice;
   }
   const ExpectedCosts costs(task);
-  const double conjugateGradient = costs.Iterations() * costs.Iteration();
-  const double iterative =
-    task.AllowMultigrid ? std::min(conjugateGradient, costs.Multigrid()) : conjugateGradient;
+  const bool isForecast = task.AllowMultigrid && task.DiffusionNumber;
   const bool hasRoom =
     !task.IsDistributed && (task.NumberOfVertices <= LargestFactor || !task.AllowMultigrid);
-  if (costs.Factorization() < iterative && hasRoom)
+  constexpr double never = std::numeric_limits<double>::infinity();
+  const double conjugateGradient = costs.Iterations() * costs.Iteration();
+  const double least = (isForecast ? EvenMesh : 1.0) * conjugateGradient;
+  const double multigrid = task.AllowMultigrid ? costs.Multigrid() : never;
+  const double factorization = hasRoom ? costs.Factorization() : never;
+  if (factorization < std::min(least, multigrid))
   {
     return choice;
   }
-  if (iterative < conjugateGradient)
+  if (multigrid < least)
   {
     choice.Method = SolverMethod::Multigrid;
     choice.Patience = PatienceOf(MostOfExpected * costs.Cycles());
     return choice;
   }
   choice.Method = SolverMethod::ConjugateGradient;
-  double next = costs.Factorization();
-  const double multigrid = costs.Multigrid(Hardness);
-  if (task.AllowMultigrid && (multigrid < FactorOfParametric * next || !hasRoom))
-  {
-    choice.Next = SolverMethod::Multigrid;
-    next = multigrid;
-  }
-  choice.Patience = PatienceOf(
-    std::max(LeastOfNext * next / costs.Iteration(), LeastOfExpected * costs.Iterations()));
-  if (task.AllowMultigrid && task.DiffusionNumber)
+  if (isForecast)
   {
     choice.ExpectedIterations = costs.Iterations();
     choice.DiffusionNumber = std::max(*task.DiffusionNumber, SmallestDiffusionNumber);
   }
+  const double other = std::min(factorization, multigrid);
+  if (other < conjugateGradient)
+  {
+    choice.Next = multigrid < factorization ? SolverMethod::Multigrid : SolverMethod::Direct;
+    choice.Patience = PatienceOf(other / costs.Iteration());
+    return choice;
+  }
+  double next = costs.Factorization();
+  const double onNeedles = costs.Multigrid(Hardness);
+  if (task.AllowMultigrid && (onNeedles < FactorOfParametric * next || !hasRoom))
+  {
+    choice.Next = SolverMethod::Multigrid;
+    next = onNeedles;
+  }
+  choice.Patience = PatienceOf(
+    std::max(LeastOfNext * next / costs.Iteration(), LeastOfExpected * costs.Iterations()));
   return choice;
 }
 

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Parallel.h"
+#include "Core/Foundation/Reduction.h"
+#include "Core/Foundation/Types.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// The preconditioner M of conjugate gradients for a symmetric positive definite matrix A: its
+/// diagonal and its entries along lines of strongly connected vertices, which tridiagonal systems
+/// solve exactly (linelets: O. Soto, R. Lohner, F. Camelli, Int. J. Numer. Methods Heat Fluid Flow
+/// 13, 2003). On needles, where the diagonal alone needs more iterations the longer these are,
+/// lines across them need those of an even mesh. Where no entry is strong, M is the diagonal.
+///
+/// An entry is strong if -a_ij > MinimumStrength min(a_ii, a_jj). On equilateral triangles it is a
+/// sixth of them. Of these each vertex names its two strongest, and those that both ends name form
+/// lines and loops. Positive entries of A are added to the diagonal of M, so that M is positive
+/// definite. Over processes, lines do not touch interfaces.
+///
+/// M is factorised in double precision, scaled to the unit diagonal of A, and stored in single
+/// precision as L D L^T, which is positive definite whatever is rounded.
+class StrongLines
+{
+public:
+  static constexpr double MinimumStrength = 0.25;
+  static constexpr double MinimumShare = 0.8;
+
+  explicit StrongLines(const ParallelFor& parallel)
+    : Parallel(parallel)
+  {
+  }
+
+  /// inverseDiagonal: that of the matrix, consistent over the processes. May throw Aborted; it has
+  /// no lines then.
+  void Set(const SparseMatrix& matrix, const Vector& inverseDiagonal,
+    const Reduction& overProcesses = Reduction::Serial());
+
+  /// The vertices on lines, line after line.
+  const std::vector<Index>& Vertices() const { return this->Row; }
+  bool IsEmpty() const { return this->Row.empty(); }
+  /// Whether a process has any.
+  bool IsEmptyEverywhere() const { return !this->IsAnywhere; }
+  /// Per such vertex, the sum of its entries along lines over a_ii, in [0, 1].
+  double Share(std::size_t place) const { return this->Shares[place]; }
+
+  /// c = B r - r at the vertices on lines, where B = D^1/2 M^-1 D^1/2 with the diagonal D of A;
+  /// elsewhere it is zero. rows: where r has each vertex on lines. Returns r . c, to the same bits
+  /// on any number of threads.
+  double Correct(const std::vector<Index>& rows, const float* r, float* c);
+
+  /// z = M^-1 r, n x k
+  void Precondition(const Vector& inverseDiagonal, const Values& r, Values& z) const;
+
+private:
+  struct Links;
+  struct LineRow;
+
+  void FindLines(const Links& links);
+  void Factorize(const SparseMatrix& matrix, const Vector& inverseDiagonal);
+  void FactorizeLine(const SparseMatrix& matrix, const Vector& inverseDiagonal, std::size_t line);
+  void Clear();
+
+  template <typename Number>
+  void SolveLine(std::size_t line, Number* x) const;
+  template <typename Act>
+  void ForTasks(const Act& act) const;
+
+  const ParallelFor& Parallel;
+  std::vector<Index> Row; ///< of the matrix
+  std::vector<std::size_t> Begin; ///< of each line, and the end
+  std::vector<char> IsLoop; ///< per line: whether its last vertex is connected with its first
+  std::vector<std::size_t> Tasks; ///< the first line of each, and the end
+  /// Per vertex on lines: D^-1 and, of its column of L, minus the entries of the next vertex and, in
+  /// loops, of the last one.
+  std::vector<float> InverseD, Next, Last;
+  std::vector<float> Shares;
+  std::vector<double> Sums; ///< of each task
+  bool IsAnywhere = false;
+};
+
+} // namespace SurfaceDiffusion
