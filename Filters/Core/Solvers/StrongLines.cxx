@@ -43,6 +43,14 @@ struct StrongLines::Links
     const Reduction& overProcesses, const ParallelFor& parallel);
 
 private:
+  /// The two strongest negative entries of a row.
+  struct Strongest
+  {
+    Pair Neighbors = { None, None };
+    std::array<double, 2> Sizes = { 0.0, 0.0 };
+
+    Strongest(const SparseMatrix& matrix, Index i);
+  };
   struct Named
   {
     Pair Neighbors;
@@ -53,67 +61,67 @@ private:
   {
     return vertex.Neighbors[0] == neighbor || vertex.Neighbors[1] == neighbor;
   }
-  static Named Strongest(const SparseMatrix& matrix, const Vector& inverseDiagonal,
-    const std::vector<char>& isOnInterface, Index i);
 };
 
 /// Of equal entries those of the vertices with smaller numbers.
-StrongLines::Links::Named StrongLines::Links::Strongest(const SparseMatrix& matrix,
-  const Vector& inverseDiagonal, const std::vector<char>& isOnInterface, Index i)
+StrongLines::Links::Strongest::Strongest(const SparseMatrix& matrix, Index i)
 {
   const Index* const inner = matrix.innerIndexPtr();
   const double* const values = matrix.valuePtr();
   double first = 0.0;
   double second = 0.0;
-  Pair neighbors{ None, None };
+  Index ofFirst = None;
+  Index ofSecond = None;
   for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
   {
     const Index j = inner[slot];
     const double entry = -values[slot]; // negative on the diagonal
     const bool isFirst = entry > first;
     const bool isSecond = entry > second;
-    neighbors[1] = isFirst ? neighbors[0] : (isSecond ? j : neighbors[1]);
+    ofSecond = isFirst ? ofFirst : (isSecond ? j : ofSecond);
     second = isFirst ? first : (isSecond ? entry : second);
-    neighbors[0] = isFirst ? j : neighbors[0];
+    ofFirst = isFirst ? j : ofFirst;
     first = isFirst ? entry : first;
   }
-  const double strongest[2] = { first, second };
-  Named named{ { None, None }, { 0.0F, 0.0F } };
-  if (!((first + second) * inverseDiagonal[i] < 1.0 - SmallestExcess))
-  {
-    return named;
-  }
-  const auto isInside = [&](Index j) { return isOnInterface.empty() || isOnInterface[j] == 0; };
-  for (int side = 0; side < 2; ++side)
-  {
-    const Index j = neighbors[side];
-    if (j != None && isInside(i) && isInside(j) &&
-      strongest[side] * std::max(inverseDiagonal[i], inverseDiagonal[j]) > MinimumStrength)
-    {
-      named.Neighbors[side] = j;
-      named.Strengths[side] = static_cast<float>(strongest[side] * inverseDiagonal[i]);
-    }
-  }
-  return named;
+  this->Neighbors = { ofFirst, ofSecond };
+  this->Sizes = { first, second };
 }
 
 bool StrongLines::Links::Find(const SparseMatrix& matrix, const Vector& inverseDiagonal,
   const Reduction& overProcesses, const ParallelFor& parallel)
 {
   const auto n = static_cast<Index>(matrix.rows());
-  const std::vector<char> isOnInterface = overProcesses.MarkInterfaces(n);
-  Buffer<Named> named(n);
-  const double any = Max(parallel, n,
+  const double largest = Max(parallel, n,
     [&](Index i)
     {
-      named[i] = Strongest(matrix, inverseDiagonal, isOnInterface, i);
-      const Pair& neighbors = named[i].Neighbors;
-      return neighbors[0] != None || neighbors[1] != None ? 1.0 : 0.0;
+      const Strongest strongest(matrix, i);
+      return (strongest.Sizes[0] + strongest.Sizes[1]) * inverseDiagonal[i];
     });
-  if (any == 0.0)
+  if (!(largest > MinimumShare))
   {
     return false;
   }
+  const std::vector<char> isOnInterface = overProcesses.MarkInterfaces(n);
+  const auto isInside = [&](Index i) { return isOnInterface.empty() || isOnInterface[i] == 0; };
+  Buffer<Named> named(n);
+  ForEach(parallel, n,
+    [&](Index i)
+    {
+      const Strongest strongest(matrix, i);
+      named[i] = { { None, None }, { 0.0F, 0.0F } };
+      const double share = (strongest.Sizes[0] + strongest.Sizes[1]) * inverseDiagonal[i];
+      for (int side = 0; side < 2; ++side)
+      {
+        const Index j = strongest.Neighbors[side];
+        if (share < 1.0 - SmallestExcess && j != None && isInside(i) && isInside(j) &&
+          strongest.Sizes[side] * std::max(inverseDiagonal[i], inverseDiagonal[j]) >
+            MinimumStrength)
+        {
+          named[i].Neighbors[side] = j;
+          named[i].Strengths[side] = static_cast<float>(strongest.Sizes[side] * inverseDiagonal[i]);
+        }
+      }
+    });
   std::vector<char> pays(n); // whether the diagonal alone would be much worse
   ForEach(parallel, n,
     [&](Index i)
@@ -127,7 +135,7 @@ bool StrongLines::Links::Find(const SparseMatrix& matrix, const Vector& inverseD
       pays[i] = sum > MinimumShare ? 1 : 0;
     });
   this->Of.resize(n);
-  ForEach(parallel, n,
+  const double any = Max(parallel, n,
     [&](Index i)
     {
       for (int side = 0; side < 2; ++side)
@@ -136,8 +144,9 @@ bool StrongLines::Links::Find(const SparseMatrix& matrix, const Vector& inverseD
         const bool isLink = j != None && Names(named[j], i) && (pays[i] != 0 || pays[j] != 0);
         this->Of[i][side] = isLink ? j : None;
       }
+      return static_cast<double>(this->Degree(i));
     });
-  return true;
+  return any > 0.0;
 }
 
 void StrongLines::Clear()

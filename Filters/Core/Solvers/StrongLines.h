@@ -18,10 +18,11 @@ namespace SurfaceDiffusion
 /// 13, 2003). On needles, where the diagonal alone needs more iterations the longer these are,
 /// lines across them need those of an even mesh. Where no entry is strong, M is the diagonal.
 ///
-/// An entry is strong if -a_ij > MinimumStrength min(a_ii, a_jj). On equilateral triangles it is a
-/// sixth of them. Of these each vertex names its two strongest, and those that both ends name form
-/// lines and loops. Positive entries of A are added to the diagonal of M, so that M is positive
-/// definite. Over processes, lines do not touch interfaces.
+/// An entry is strong if -a_ij > MinimumStrength min(a_ii, a_jj); on equilateral triangles it is a
+/// sixth of them. Each vertex names its two strongest, and those that both ends name form lines and
+/// loops, as far as they are more than MinimumShare of the diagonal at one of their ends. Positive
+/// entries of A are added to the diagonal of M, so that M is positive definite. Over processes,
+/// lines do not touch interfaces.
 ///
 /// M is factorised in double precision, scaled to the unit diagonal of A, and stored in single
 /// precision as L D L^T, which is positive definite whatever is rounded.
