@@ -207,7 +207,7 @@ TEST(StrongLines, GiveTheSameBitsOnAnyThreads)
 // Round-off would be taken for the mean of a needle's ends: iterations would be ten times as many.
 TEST(StrongLines, LeaveWhatRoundOffHides)
 {
-  const LinesOf seam(HeatMatrix(TorusWithSeam(60), 1.0));
+  const LinesOf seam(HeatMatrix(TorusWithSeam(60, 1.0, 0.2), 1.0));
   EXPECT_FALSE(seam.Lines.IsEmpty());
   for (std::size_t k = 0; k < seam.Lines.Vertices().size(); ++k)
   {

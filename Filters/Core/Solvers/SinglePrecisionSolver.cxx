@@ -36,6 +36,7 @@ void SinglePrecisionSolver::SetMatrix(
   this->Matrix.Set(matrix, this->Roots);
   this->Lines = lines.IsEmpty() ? nullptr : &lines;
   const std::vector<Index>& vertices = lines.Vertices();
+  this->PlacesOnLines.reserve(vertices.capacity());
   this->PlacesOnLines.resize(vertices.size());
   ForEach(this->Parallel, static_cast<Index>(vertices.size()),
     [&](Index k) { this->PlacesOnLines[k] = this->Matrix.PlacesOfRows()[vertices[k]]; });
@@ -274,12 +275,13 @@ int SinglePrecisionSolver::Iterate(const Group& group, int maximumNumberOfIterat
 void SinglePrecisionSolver::CorrectByLines(const Group& group, const bool* solved, double* products)
 {
   const std::size_t count = this->PlacesOnLines.size();
+  this->Corrections.reserve(this->PlacesOnLines.capacity() * group.Count);
   this->Corrections.resize(count * group.Count);
   for (int c = 0; c < group.Count; ++c)
   {
     products[c] = this->Lines && solved[c]
       ? this->Lines->Correct(this->PlacesOnLines, this->R.data() + c * this->Matrix.PaddedRows(),
-          this->Corrections.data() + c * count)
+          &this->Corrections[c * count])
       : 0.0;
   }
 }

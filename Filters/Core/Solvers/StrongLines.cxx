@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Solvers/StrongLines.h"
 
-#include "Core/Foundation/Buffer.h"
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -20,56 +17,37 @@ constexpr std::size_t TaskSize = 8192; // vertices of a task, at least
 /// Of the diagonal: what is left of it without the two strongest entries. Where it is less, round-off
 /// of single precision would be taken for the mean of a needle's ends.
 constexpr double SmallestExcess = 1e-6;
+constexpr double ClearRatio =
+  1.37; // of entries that stand out to others; no ratio of regular meshes
 
 } // namespace
 
-/// Of each vertex, the neighbours along its line.
-struct StrongLines::Links
+/// The two strongest negative entries of a row, and the third.
+struct StrongLines::StrongestEntries
 {
-  using Pair = std::array<Index, 2>;
+  Pair Columns = { None, None };
+  double First = 0.0, Second = 0.0, Third = 0.0;
 
-  std::vector<Pair> Of;
+  StrongestEntries(const SparseMatrix& matrix, Index i);
 
-  Index Degree(Index i) const { return (this->Of[i][0] != None) + (this->Of[i][1] != None); }
-  bool Has(Index i, Index j) const { return this->Of[i][0] == j || this->Of[i][1] == j; }
-  /// The neighbour of i that is not `last`, or None.
-  Index After(Index i, Index last) const
+  double Size(int number) const { return number == 0 ? this->First : this->Second; }
+  /// How many stand out from the others: which of equal ones came first would depend on the
+  /// numbering of the vertices.
+  int NumberOfDistinct() const
   {
-    return this->Of[i][0] != last ? this->Of[i][0] : this->Of[i][1];
-  }
-
-  /// Returns whether there are any.
-  bool Find(const SparseMatrix& matrix, const Vector& inverseDiagonal,
-    const Reduction& overProcesses, const ParallelFor& parallel);
-
-private:
-  /// The two strongest negative entries of a row.
-  struct Strongest
-  {
-    Pair Neighbors = { None, None };
-    std::array<double, 2> Sizes = { 0.0, 0.0 };
-
-    Strongest(const SparseMatrix& matrix, Index i);
-  };
-  struct Named
-  {
-    Pair Neighbors;
-    std::array<float, 2> Strengths; ///< of their entries: of the diagonal
-  };
-
-  static bool Names(const Named& vertex, Index neighbor)
-  {
-    return vertex.Neighbors[0] == neighbor || vertex.Neighbors[1] == neighbor;
+    return this->Second > ClearRatio * this->Third
+      ? 2
+      : (this->First > ClearRatio * this->Second ? 1 : 0);
   }
 };
 
-/// Of equal entries those of the vertices with smaller numbers.
-StrongLines::Links::Strongest::Strongest(const SparseMatrix& matrix, Index i)
+StrongLines::StrongestEntries::StrongestEntries(const SparseMatrix& matrix, Index i)
 {
   const Index* const inner = matrix.innerIndexPtr();
   const double* const values = matrix.valuePtr();
   double first = 0.0;
   double second = 0.0;
+  double third = 0.0;
   Index ofFirst = None;
   Index ofSecond = None;
   for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
@@ -78,75 +56,16 @@ StrongLines::Links::Strongest::Strongest(const SparseMatrix& matrix, Index i)
     const double entry = -values[slot]; // negative on the diagonal
     const bool isFirst = entry > first;
     const bool isSecond = entry > second;
+    third = isSecond ? second : std::max(third, entry);
     ofSecond = isFirst ? ofFirst : (isSecond ? j : ofSecond);
     second = isFirst ? first : (isSecond ? entry : second);
     ofFirst = isFirst ? j : ofFirst;
     first = isFirst ? entry : first;
   }
-  this->Neighbors = { ofFirst, ofSecond };
-  this->Sizes = { first, second };
-}
-
-bool StrongLines::Links::Find(const SparseMatrix& matrix, const Vector& inverseDiagonal,
-  const Reduction& overProcesses, const ParallelFor& parallel)
-{
-  const auto n = static_cast<Index>(matrix.rows());
-  const double largest = Max(parallel, n,
-    [&](Index i)
-    {
-      const Strongest strongest(matrix, i);
-      return (strongest.Sizes[0] + strongest.Sizes[1]) * inverseDiagonal[i];
-    });
-  if (!(largest > MinimumShare))
-  {
-    return false;
-  }
-  const std::vector<char> isOnInterface = overProcesses.MarkInterfaces(n);
-  const auto isInside = [&](Index i) { return isOnInterface.empty() || isOnInterface[i] == 0; };
-  Buffer<Named> named(n);
-  ForEach(parallel, n,
-    [&](Index i)
-    {
-      const Strongest strongest(matrix, i);
-      named[i] = { { None, None }, { 0.0F, 0.0F } };
-      const double share = (strongest.Sizes[0] + strongest.Sizes[1]) * inverseDiagonal[i];
-      for (int side = 0; side < 2; ++side)
-      {
-        const Index j = strongest.Neighbors[side];
-        if (share < 1.0 - SmallestExcess && j != None && isInside(i) && isInside(j) &&
-          strongest.Sizes[side] * std::max(inverseDiagonal[i], inverseDiagonal[j]) >
-            MinimumStrength)
-        {
-          named[i].Neighbors[side] = j;
-          named[i].Strengths[side] = static_cast<float>(strongest.Sizes[side] * inverseDiagonal[i]);
-        }
-      }
-    });
-  std::vector<char> pays(n); // whether the diagonal alone would be much worse
-  ForEach(parallel, n,
-    [&](Index i)
-    {
-      float sum = 0.0F;
-      for (int side = 0; side < 2; ++side)
-      {
-        const Index j = named[i].Neighbors[side];
-        sum += j != None && Names(named[j], i) ? named[i].Strengths[side] : 0.0F;
-      }
-      pays[i] = sum > MinimumShare ? 1 : 0;
-    });
-  this->Of.resize(n);
-  const double any = Max(parallel, n,
-    [&](Index i)
-    {
-      for (int side = 0; side < 2; ++side)
-      {
-        const Index j = named[i].Neighbors[side];
-        const bool isLink = j != None && Names(named[j], i) && (pays[i] != 0 || pays[j] != 0);
-        this->Of[i][side] = isLink ? j : None;
-      }
-      return static_cast<double>(this->Degree(i));
-    });
-  return any > 0.0;
+  this->Columns = { ofFirst, ofSecond };
+  this->First = first;
+  this->Second = second;
+  this->Third = third;
 }
 
 void StrongLines::Clear()
@@ -158,66 +77,161 @@ void StrongLines::Clear()
   this->IsAnywhere = false;
 }
 
+/// Room for n vertices on lines. Pages that are not used take no memory.
+void StrongLines::Reserve(std::size_t n)
+{
+  if (this->Row.capacity() >= n)
+  {
+    return;
+  }
+  this->Begin.reserve(n / 2 + 2);
+  this->IsLoop.reserve(n / 2 + 1);
+  this->Tasks.reserve(n / TaskSize + 2);
+  this->Sums.reserve(n / TaskSize + 2);
+  for (std::vector<float>* numbers : { &this->InverseD, &this->Next, &this->Last, &this->Shares })
+  {
+    numbers->reserve(n);
+  }
+  this->Named.reserve(n);
+  this->Pays.reserve(n);
+  this->IsTaken.reserve(n);
+  this->Row.reserve(n);
+}
+
 void StrongLines::Set(
   const SparseMatrix& matrix, const Vector& inverseDiagonal, const Reduction& overProcesses)
 {
   this->Clear();
-  Links links;
-  const bool hasLines = links.Find(matrix, inverseDiagonal, overProcesses, this->Parallel);
-  this->IsAnywhere = overProcesses.Any(hasLines);
-  if (!hasLines)
+  this->Reserve(static_cast<std::size_t>(matrix.rows()));
+  const double largest = Max(this->Parallel, static_cast<Index>(matrix.rows()),
+    [&](Index i)
+    {
+      const StrongestEntries strongest(matrix, i);
+      return (strongest.First + strongest.Second) * inverseDiagonal[i];
+    });
+  if (largest > MinimumShare)
   {
-    return;
+    try
+    {
+      this->NameNeighbors(matrix, inverseDiagonal, overProcesses);
+      this->FindLines(static_cast<Index>(matrix.rows()));
+      this->Factorize(matrix, inverseDiagonal);
+    }
+    catch (...) // an abort
+    {
+      this->Clear();
+      throw;
+    }
   }
-  try
+  this->IsAnywhere = overProcesses.Any(!this->IsEmpty());
+}
+
+void StrongLines::NameNeighbors(
+  const SparseMatrix& matrix, const Vector& inverseDiagonal, const Reduction& overProcesses)
+{
+  const auto n = static_cast<Index>(matrix.rows());
+  const std::vector<char> isOnInterface = overProcesses.MarkInterfaces(n);
+  const auto isInside = [&](Index i) { return isOnInterface.empty() || isOnInterface[i] == 0; };
+  this->Named.resize(n);
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      const StrongestEntries strongest(matrix, i);
+      this->Named[i] = { None, None };
+      const double share = (strongest.First + strongest.Second) * inverseDiagonal[i];
+      if (!(share < 1.0 - SmallestExcess) || !isInside(i))
+      {
+        return;
+      }
+      for (int k = 0; k < strongest.NumberOfDistinct(); ++k)
+      {
+        const Index j = strongest.Columns[k];
+        if (j != None && isInside(j) &&
+          strongest.Size(k) * std::max(inverseDiagonal[i], inverseDiagonal[j]) > MinimumStrength)
+        {
+          this->Named[i][k] = j;
+        }
+      }
+    });
+  this->Pays.resize(n);
+  ForEach(this->Parallel, n,
+    [&](Index i)
+    {
+      this->Pays[i] = 0;
+      if (this->AreMutual(i, 0) || this->AreMutual(i, 1))
+      {
+        const StrongestEntries strongest(matrix, i);
+        const double sum = (this->AreMutual(i, 0) ? strongest.First : 0.0) +
+          (this->AreMutual(i, 1) ? strongest.Second : 0.0);
+        this->Pays[i] = sum * inverseDiagonal[i] > MinimumShare ? 1 : 0;
+      }
+    });
+}
+
+bool StrongLines::AreMutual(Index i, int side) const
+{
+  const Index j = this->Named[i][side];
+  return j != None && (this->Named[j][0] == i || this->Named[j][1] == i);
+}
+
+/// The neighbours of vertex i along its line, or None.
+StrongLines::Pair StrongLines::Neighbors(Index i) const
+{
+  Pair neighbors = { None, None };
+  for (int side = 0; side < 2; ++side)
   {
-    this->FindLines(links);
-    this->Factorize(matrix, inverseDiagonal);
+    const Index j = this->Named[i][side];
+    if (this->AreMutual(i, side) && (this->Pays[i] != 0 || this->Pays[j] != 0))
+    {
+      neighbors[side] = j;
+    }
   }
-  catch (...) // an abort
-  {
-    this->Clear();
-    throw;
-  }
+  return neighbors;
 }
 
 /// In the order of their first vertices, first the lines and then the loops.
-void StrongLines::FindLines(const Links& links)
+void StrongLines::FindLines(Index n)
 {
-  const auto n = static_cast<Index>(links.Of.size());
-  std::vector<char> isTaken(n, 0);
+  this->IsTaken.assign(n, 0);
   const auto follow = [&](Index first)
   {
     Index last = None;
-    for (Index i = first; i != None && !isTaken[i];)
+    for (Index i = first; i != None && this->IsTaken[i] == 0;)
     {
-      isTaken[i] = 1;
+      this->IsTaken[i] = 1;
       this->Row.push_back(i);
-      const Index next = links.After(i, last);
+      const Pair neighbors = this->Neighbors(i);
+      const Index next = neighbors[0] != last ? neighbors[0] : neighbors[1];
       last = i;
       i = next;
     }
-    const bool isLoop = this->Row.size() - this->Begin.back() > 2 && links.Has(last, first);
-    const bool isLong = this->Row.size() - this->Begin.back() > LongestLine;
+    const Pair ofLast = this->Neighbors(last);
+    const std::size_t length = this->Row.size() - this->Begin.back();
+    const bool isLoop =
+      length > 2 && length <= LongestLine && (ofLast[0] == first || ofLast[1] == first);
     while (this->Row.size() - this->Begin.back() > LongestLine)
     {
       this->Begin.push_back(this->Begin.back() + LongestLine);
       this->IsLoop.push_back(0);
     }
     this->Begin.push_back(this->Row.size());
-    this->IsLoop.push_back(isLoop && !isLong ? 1 : 0);
+    this->IsLoop.push_back(isLoop ? 1 : 0);
     if (this->Row.size() - this->Begin[this->Tasks.back()] >= TaskSize)
     {
       this->Tasks.push_back(this->IsLoop.size());
     }
   };
-  for (const Index degree : { 1, 2 })
+  for (const int degree : { 1, 2 })
   {
     for (Index i = 0; i < n; ++i)
     {
-      if (!isTaken[i] && links.Degree(i) == degree)
+      if (this->IsTaken[i] == 0 && this->Named[i] != Pair{ None, None })
       {
-        follow(i);
+        const Pair neighbors = this->Neighbors(i);
+        if ((neighbors[0] != None) + (neighbors[1] != None) == degree)
+        {
+          follow(i);
+        }
       }
     }
   }
@@ -242,7 +256,7 @@ void StrongLines::ForTasks(const Act& act) const
 
 void StrongLines::Factorize(const SparseMatrix& matrix, const Vector& inverseDiagonal)
 {
-  for (std::vector<float>* numbers : { &this->Next, &this->InverseD, &this->Last, &this->Shares })
+  for (std::vector<float>* numbers : { &this->InverseD, &this->Next, &this->Last, &this->Shares })
   {
     numbers->resize(this->Row.size());
   }

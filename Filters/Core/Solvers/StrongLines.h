@@ -6,6 +6,7 @@
 #include "Core/Foundation/Reduction.h"
 #include "Core/Foundation/Types.h"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -19,8 +20,9 @@ namespace SurfaceDiffusion
 /// lines across them need those of an even mesh. Where no entry is strong, M is the diagonal.
 ///
 /// An entry is strong if -a_ij > MinimumStrength min(a_ii, a_jj); on equilateral triangles it is a
-/// sixth of them. Each vertex names its two strongest, and those that both ends name form lines and
-/// loops, as far as they are more than MinimumShare of the diagonal at one of their ends. Positive
+/// sixth of them. Each vertex names its two strongest, or as many of them as are clearly stronger
+/// than the others. Those that both ends name form lines and loops, as far as they are more than
+/// MinimumShare of the diagonal at one of their ends. Positive
 /// entries of A are added to the diagonal of M, so that M is positive definite. Over processes,
 /// lines do not touch interfaces.
 ///
@@ -29,8 +31,8 @@ namespace SurfaceDiffusion
 class StrongLines
 {
 public:
-  static constexpr double MinimumStrength = 0.25;
-  static constexpr double MinimumShare = 0.8;
+  static constexpr double MinimumStrength = 0.27;
+  static constexpr double MinimumShare = 0.83;
 
   explicit StrongLines(const ParallelFor& parallel)
     : Parallel(parallel)
@@ -59,10 +61,16 @@ public:
   void Precondition(const Vector& inverseDiagonal, const Values& r, Values& z) const;
 
 private:
-  struct Links;
+  using Pair = std::array<Index, 2>;
+  struct StrongestEntries;
   struct LineRow;
 
-  void FindLines(const Links& links);
+  void Reserve(std::size_t n);
+  void NameNeighbors(
+    const SparseMatrix& matrix, const Vector& inverseDiagonal, const Reduction& overProcesses);
+  bool AreMutual(Index i, int side) const;
+  Pair Neighbors(Index i) const;
+  void FindLines(Index n);
   void Factorize(const SparseMatrix& matrix, const Vector& inverseDiagonal);
   void FactorizeLine(const SparseMatrix& matrix, const Vector& inverseDiagonal, std::size_t line);
   void Clear();
@@ -82,6 +90,10 @@ private:
   std::vector<float> InverseD, Next, Last;
   std::vector<float> Shares;
   std::vector<double> Sums; ///< of each task
+  // Work, kept so that time steps do not allocate:
+  std::vector<Pair> Named; ///< per vertex of the matrix
+  std::vector<char> Pays; ///< whether the diagonal alone would be much worse
+  std::vector<char> IsTaken;
   bool IsAnywhere = false;
 };
 
