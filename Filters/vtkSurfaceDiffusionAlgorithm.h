@@ -83,10 +83,10 @@ public:
   /**
    * The solver of linear systems. Direct: sparse Cholesky factorisation, which is kept while the
    * matrix does not change. ConjugateGradient: conjugate gradients with Jacobi preconditioner, as
-   * in the paper. Multigrid: conjugate gradients with smoothed aggregation as preconditioner; the
-   * number of iterations hardly grows with the size and the time step. Automatic (default): the
-   * solver that is expected to be the fastest for the size, the time step and the number of steps,
-   * according to measurements. Where narrow triangles keep the iterations of Automatic or Multigrid
+   * in the paper, which also solves along lines across narrow triangles. Multigrid: conjugate
+   * gradients with smoothed aggregation as preconditioner; the number of iterations hardly grows
+   * with the size and the time step. Automatic (default): the solver that is expected to be the
+   * fastest for the size, the time step and the number of steps, according to measurements. Where narrow triangles keep the iterations of Automatic or Multigrid
    * from converging, another solver takes over, at last Direct.
    */
   SURFACEDIFFUSION_CHOICE(Solver);
@@ -100,7 +100,8 @@ public:
   /**
    * The relative residual, in the norm of the inverse diagonal, at which iterative solvers stop, in
    * (0, 1), and the largest number of iterations, 1 or more. A solve that does not converge within
-   * them is an error. Default: 1e-10 (1e-3 in vtkIntrinsicTVFilter), 1000.
+   * them is an error. Default: 1e-10 (1e-3 in vtkIntrinsicTVFilter and vtkTensorDiffusionFilter,
+   * 0.1 in vtkMumfordShahFilter), 1000.
    */
   SURFACEDIFFUSION_PROPERTY(Tolerance, double);
   SURFACEDIFFUSION_PROPERTY(MaximumNumberOfIterations, int);
