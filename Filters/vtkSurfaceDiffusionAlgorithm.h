@@ -86,8 +86,9 @@ public:
    * in the paper, which also solves along lines across narrow triangles. Multigrid: conjugate
    * gradients with smoothed aggregation as preconditioner; the number of iterations hardly grows
    * with the size and the time step. Automatic (default): the solver that is expected to be the
-   * fastest for the size, the time step and the number of steps, according to measurements. Where narrow triangles keep the iterations of Automatic or Multigrid
-   * from converging, another solver takes over, at last Direct.
+   * fastest for the size, the time step and the number of steps, according to measurements. Where
+   * narrow triangles keep the iterations of Automatic or Multigrid from converging, another solver
+   * takes over, at last Direct.
    */
   SURFACEDIFFUSION_CHOICE(Solver);
   void SetSolverToAutomatic() { this->SetSolver(SOLVER_AUTOMATIC); }

@@ -71,7 +71,7 @@ struct MatrixSystem : SystemDefaults
   double Scale(Index i, int c, const double* r) const { return this->InverseDiagonal[i] * r[c]; }
 };
 
-/// A stored matrix with the preconditioner StrongLines, which is its diagonal if there are no lines.
+/// A stored matrix with the preconditioner StrongLines: its diagonal where there are no lines.
 struct LineSystem : MatrixSystem
 {
   LineSystem(const SparseMatrix& matrix, const Vector& inverseDiagonal, const StrongLines& lines,

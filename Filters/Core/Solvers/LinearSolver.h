@@ -101,9 +101,9 @@ protected:
 std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = SerialFor());
 
 /// Conjugate gradients with the preconditioner StrongLines, all columns in one pass over the
-/// matrix, each with its own step lengths. The paper's PBCG is this method for symmetric matrices (Appendix).
-/// Unless the matrix is stiff, the iterations are in single precision and measure their residuals
-/// in double precision (SinglePrecisionSolver), to the same tolerance.
+/// matrix, each with its own step lengths. The paper's PBCG is this method for symmetric matrices
+/// (Appendix). Unless the matrix is stiff, the iterations are in single precision and measure their
+/// residuals in double precision (SinglePrecisionSolver), to the same tolerance.
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
   const ParallelFor& parallel = SerialFor());
 

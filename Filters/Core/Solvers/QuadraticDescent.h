@@ -10,9 +10,9 @@ namespace SurfaceDiffusion
 {
 
 /// Minimises 1/2 x.Ax - b.x by a few conjugate gradient iterations with the preconditioner
-/// StrongLines, with shifts that of Jacobi, as the inner iteration of an outer one that changes b a little from call to call and carries x
-/// along. Unlike a LinearSolver it keeps the residual between calls, so that no product is spent on
-/// computing it.
+/// StrongLines, with shifts that of Jacobi, as the inner iteration of an outer one that changes b a
+/// little from call to call and carries x along. Unlike a LinearSolver it keeps the residual
+/// between calls, so that no product is spent on computing it.
 class QuadraticDescent
 {
 public:

@@ -14,10 +14,10 @@ namespace SurfaceDiffusion
 {
 
 /// Conjugate gradients with the preconditioner StrongLines in single precision, for A x = b with a
-/// symmetric positive definite matrix A: they need half the memory traffic of double precision. Now and then
-/// the caller measures the residual in double precision, and the iterations continue from it along
-/// their last direction, so that they converge as in double precision (M. Clark, R. Babich,
-/// K. Barros, R. Brower, C. Rebbi, Comput. Phys. Commun. 181, 2010: reliable updates).
+/// symmetric positive definite matrix A: they need half the memory traffic of double precision. Now
+/// and then the caller measures the residual in double precision, and the iterations continue from
+/// it along their last direction, so that they converge as in double precision (M. Clark, R.
+/// Babich, K. Barros, R. Brower, C. Rebbi, Comput. Phys. Commun. 181, 2010: reliable updates).
 class SinglePrecisionSolver
 {
 public:

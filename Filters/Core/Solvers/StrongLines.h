@@ -65,7 +65,15 @@ private:
   struct StrongestEntries;
   struct LineRow;
 
+  /// Longer lines are cut, for the sake of threads.
+  static constexpr std::size_t LongestLine = 4096;
+  static constexpr std::size_t TaskSize = 8192; ///< vertices of a task, at least
+  /// Of the diagonal: what is left of it without the entries along a line. Where it is less,
+  /// round-off of single precision would be taken for the mean of a needle's ends.
+  static constexpr double SmallestExcess = 1e-6;
+
   void Reserve(std::size_t n);
+  bool MayHaveLines(const SparseMatrix& matrix, const Vector& inverseDiagonal) const;
   void NameNeighbors(
     const SparseMatrix& matrix, const Vector& inverseDiagonal, const Reduction& overProcesses);
   bool AreMutual(Index i, int side) const;
@@ -85,8 +93,8 @@ private:
   std::vector<std::size_t> Begin; ///< of each line, and the end
   std::vector<char> IsLoop; ///< per line: whether its last vertex is connected with its first
   std::vector<std::size_t> Tasks; ///< the first line of each, and the end
-  /// Per vertex on lines: D^-1 and, of its column of L, minus the entries of the next vertex and, in
-  /// loops, of the last one.
+  /// Per vertex on lines: D^-1 and, of its column of L, minus the entries of the next vertex and,
+  /// in loops, of the last one.
   std::vector<float> InverseD, Next, Last;
   std::vector<float> Shares;
   std::vector<double> Sums; ///< of each task
