@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <tuple>
+#include <vector>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -84,6 +87,50 @@ TEST(QuadraticDescent, EndsAtTheSolutionInSinglePrecision)
     system.Descent.Improve(system.X, 0.0, 4);
   }
   EXPECT_LT(system.TrueResidual().cwiseAbs().maxCoeff(), 1e-13);
+}
+
+// Of directions that are nearly constant along lines, products in single precision have no digit.
+TEST(QuadraticDescent, KnowsWhatLinesHideInSinglePrecision)
+{
+  constexpr Index side = 150;
+  constexpr double across = 1e-6;
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  const auto connect = [&](Index i, Index j, double weight)
+  {
+    for (const auto& [row, column, sign] : { std::tuple(i, i, 1.0), std::tuple(j, j, 1.0),
+           std::tuple(i, j, -1.0), std::tuple(j, i, -1.0) })
+    {
+      entries.emplace_back(row, column, sign * weight);
+    }
+  };
+  for (Index i = 0; i < side * side; ++i)
+  {
+    entries.emplace_back(i, i, 1e-2 * across);
+    if (i % side + 1 < side)
+    {
+      connect(i, i + 1, 1.0);
+    }
+    if (i + side < side * side)
+    {
+      connect(i, i + side, across);
+    }
+  }
+  SparseMatrix matrix(side * side, side * side);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  std::mt19937 engine(1);
+  std::normal_distribution<double> normal;
+  const Values b = Values::NullaryExpr(side * side, 1, [&] { return normal(engine); });
+  Values x = Values::Zero(side * side, 1);
+  QuadraticDescent descent;
+  descent.SetSinglePrecision(true);
+  descent.SetMatrix(matrix);
+  descent.Residual = b;
+  for (int call = 0; call < 5; ++call)
+  {
+    descent.Improve(x, 0.1, 20);
+  }
+  EXPECT_LT((b - matrix * x - descent.Residual).norm(), 2e-2 * b.norm());
+  EXPECT_LT((b - matrix * x).norm(), 0.1 * b.norm());
 }
 
 TEST(QuadraticDescent, StopsAtTheReduction)

@@ -219,6 +219,27 @@ TEST(StrongLines, LeaveWhatRoundOffHides)
   EXPECT_FALSE(LinesOf(pair).Lines.IsEmpty());
 }
 
+// Such entries, which no surface has, would make M another matrix than A.
+TEST(StrongLines, LeaveRowsWithLargePositiveEntries)
+{
+  SparseMatrix matrix = PathMatrix(50, false, 1.0);
+  EXPECT_EQ(LinesOf(matrix).Lines.Vertices().size(), 50U);
+  std::vector<Eigen::Triplet<double, Index>> entries;
+  for (Index i = 0; i < 50; ++i)
+  {
+    for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
+    {
+      entries.emplace_back(i, a.index(), a.value());
+    }
+    entries.emplace_back(i, 50, 300.0);
+    entries.emplace_back(50, i, 300.0);
+  }
+  entries.emplace_back(50, 50, 1e6);
+  SparseMatrix larger(51, 51);
+  larger.setFromTriplets(entries.begin(), entries.end());
+  EXPECT_TRUE(LinesOf(larger).Lines.IsEmpty());
+}
+
 TEST(StrongLines, AreNotMadeOfFixedOrBrokenRows)
 {
   SparseMatrix matrix = PathMatrix(10, false, 1.0);

@@ -122,7 +122,7 @@ void FallBackSolver::MeasureRows(const SparseMatrix& matrix)
 /// Of conjugate gradients, from MeasureRows(), whose results are lost: they need the iterations of
 /// even meshes on which the diffusion number is that of the stiffest fiftieth of the vertices, but
 /// for entries along lines. Few stiffer ones only add few eigenvalues, which are found one by one.
-/// 0: no forecast.
+/// 0: no forecast, or nothing is stiff.
 double FallBackSolver::TakeForecast(const SparseMatrix& matrix)
 {
   // dt K_ii / M_ii of these vertices on the surfaces of the model; 4 on an even mesh
@@ -146,7 +146,7 @@ double FallBackSolver::TakeForecast(const SparseMatrix& matrix)
     });
   const double found = this->OverProcesses->QuantileInPlace(stiffness, 1.0 - stiffest);
   const double ratio = found / (perDiffusionNumber * this->DiffusionNumber);
-  return this->ExpectedIterations * std::pow(ratio, exponent);
+  return this->ExpectedIterations * std::pow(std::max(ratio, 0.0), exponent);
 }
 
 SolveReport FallBackSolver::Solve(const Values& b, Values& x, const ProgressMonitor& progress)

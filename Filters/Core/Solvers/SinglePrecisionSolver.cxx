@@ -219,12 +219,15 @@ int SinglePrecisionSolver::Iterate(const Group& group, int maximumNumberOfIterat
   {
     ++iterations;
     this->Matrix.Multiply(count, p, this->Q.data(), sums);
-    this->Accumulate(count, p, sums);
+    double onLines[Group::Most];
+    std::copy_n(this->SquaresOnLines.begin(), count, onLines);
+    this->Accumulate(count, p, sums, onLines);
     for (int c = 0; c < count; ++c)
     {
       const Column& column = group.Columns[c];
       const double step = active[c] ? column.Rho / sums[c] : 0.0;
-      const bool isBounded = sums[c] > SmallestResolved * column.DirectionSquare;
+      // Elsewhere B is the identity, so that p.p is at most this.
+      const bool isBounded = sums[c] > SmallestResolved * (column.DirectionSquare + onLines[c]);
       solved[c] = solved[c] && (!active[c] || (isBounded && std::isfinite(step)));
       active[c] = active[c] && solved[c];
       alpha[c] = active[c] ? static_cast<float>(step) : 0.0F;
@@ -286,28 +289,31 @@ void SinglePrecisionSolver::CorrectByLines(const Group& group, const bool* solve
   }
 }
 
-/// P += B R - R
+/// P += B R - R, and SquaresOnLines, of the process.
 void SinglePrecisionSolver::AddCorrections(const Group& group, const bool* goesOn)
 {
   const std::size_t count = this->PlacesOnLines.size();
   float* const p =
     this->P.data() + static_cast<std::size_t>(group.First) * this->Matrix.PaddedRows();
+  this->SquaresOnLines.assign(Group::Most, 0.0);
   for (int c = 0; c < group.Count; ++c)
   {
     if (goesOn[c])
     {
-      ForEach(this->Parallel, static_cast<Index>(count),
-        [&](Index k) {
-          p[c * this->Matrix.PaddedRows() + this->PlacesOnLines[k]] +=
-            this->Corrections[c * count + k];
+      this->SquaresOnLines[c] = Sum(this->Parallel, static_cast<Index>(count),
+        [&](Index k)
+        {
+          float& entry = p[c * this->Matrix.PaddedRows() + this->PlacesOnLines[k]];
+          entry += this->Corrections[c * count + k];
+          return static_cast<double>(entry) * entry;
         });
     }
   }
 }
 
-/// Q = A p and p . Q over all processes, from those of the process. Matrix has added the unit
-/// diagonal in each of them; it is meant once.
-void SinglePrecisionSolver::Accumulate(int columns, const float* p, double* sums)
+/// Q = A p, p . Q and the squares on lines over all processes, from those of the process. Matrix
+/// has added the unit diagonal in each of them; it is meant once.
+void SinglePrecisionSolver::Accumulate(int columns, const float* p, double* sums, double* onLines)
 {
   if (this->OverProcesses.IsSerial())
   {
@@ -341,7 +347,16 @@ void SinglePrecisionSolver::Accumulate(int columns, const float* p, double* sums
       this->Q[c * rows + places[vertex]] = static_cast<float>(*number);
     }
   }
-  this->OverProcesses.Sum(sums, columns);
+  this->SumBoth(columns, sums, onLines);
+}
+
+void SinglePrecisionSolver::SumBoth(int columns, double* sums, double* others)
+{
+  double both[2 * Group::Most];
+  std::copy_n(others, columns, std::copy_n(sums, columns, both));
+  this->OverProcesses.Sum(both, 2 * columns);
+  std::copy_n(both, columns, sums);
+  std::copy_n(both + columns, columns, others);
 }
 
 /// sums[c] = r . r and products[c] over all processes, from those of the process.
@@ -360,11 +375,7 @@ void SinglePrecisionSolver::CountOnce(int columns, const float* r, double* sums,
       sums[c] -= entry * entry;
     }
   }
-  double both[2 * Group::Most];
-  std::copy_n(products, columns, std::copy_n(sums, columns, both));
-  this->OverProcesses.Sum(both, 2 * columns);
-  std::copy_n(both, columns, sums);
-  std::copy_n(both + columns, columns, products);
+  this->SumBoth(columns, sums, products);
 }
 
 /// x += D^-1/2 Y, and r = D^1/2 R unless it is null.

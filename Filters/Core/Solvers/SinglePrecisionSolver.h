@@ -42,10 +42,10 @@ public:
     double Reduction = 1.0; ///< the factor by which to reduce this length; 1: leave the column
     /// Of the first residual of the iteration, the unit of single precision; 0: it begins.
     double FirstLength = 0.0;
-    // Squared lengths before the last step, in the unit of single precision:
-    double Square = 0.0; ///< of the residual r
+    // Before the last step, in the unit of single precision:
+    double Square = 0.0; ///< r . r of the residual
     double Rho = 0.0; ///< r . B r with the preconditioner B; without lines it is Square
-    double DirectionSquare = 0.0;
+    double DirectionSquare = 0.0; ///< p . B^-1 p of the direction
   };
 
   /// Add to x what reduces the residuals, r = b - A x in double precision. The bits of a column do
@@ -72,7 +72,8 @@ private:
 
   void CorrectByLines(const Group& group, const bool* solved, double* products);
   void AddCorrections(const Group& group, const bool* goesOn);
-  void Accumulate(int columns, const float* p, double* sums);
+  void Accumulate(int columns, const float* p, double* sums, double* onLines);
+  void SumBoth(int columns, double* sums, double* others);
   void CountOnce(int columns, const float* r, double* sums, double* products);
 
   const ParallelFor& Parallel;
@@ -81,6 +82,7 @@ private:
   StrongLines* Lines = nullptr; ///< null if there are none
   std::vector<Index> PlacesOnLines; ///< in the order of Matrix, of the vertices on lines
   std::vector<float> Corrections; ///< B r - r there, of the columns of a group
+  std::vector<double> SquaresOnLines; ///< p . p there, of each
   Vector Roots; ///< D^-1/2
   std::vector<float> R, Q, Y; ///< of a few columns, in the order of Matrix
   std::vector<Column> Descents; ///< work

@@ -21,6 +21,7 @@ struct StrongLines::StrongestEntries
 {
   Pair Columns = { None, None };
   double First = 0.0, Second = 0.0, Third = 0.0;
+  double Positive = 0.0; ///< the sum of the positive ones, with the diagonal
 
   StrongestEntries(const SparseMatrix& matrix, Index i);
 
@@ -42,12 +43,14 @@ StrongLines::StrongestEntries::StrongestEntries(const SparseMatrix& matrix, Inde
   double first = 0.0;
   double second = 0.0;
   double third = 0.0;
+  double positive = 0.0;
   Index ofFirst = None;
   Index ofSecond = None;
   for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
   {
     const Index j = inner[slot];
     const double entry = -values[slot]; // negative on the diagonal
+    positive += std::max(-entry, 0.0);
     const bool isFirst = entry > first;
     const bool isSecond = entry > second;
     third = isSecond ? second : std::max(third, entry);
@@ -60,6 +63,7 @@ StrongLines::StrongestEntries::StrongestEntries(const SparseMatrix& matrix, Inde
   this->First = first;
   this->Second = second;
   this->Third = third;
+  this->Positive = positive;
 }
 
 /// False if no row has strong entries enough, as on even meshes.
@@ -87,7 +91,9 @@ void StrongLines::NameNeighbors(
       const StrongestEntries strongest(matrix, i);
       this->Named[i] = { None, None };
       const double share = (strongest.First + strongest.Second) * inverseDiagonal[i];
-      if (!(share < 1.0 - SmallestExcess) || !isInside(i))
+      // Positive entries above the diagonal would make M another matrix than A.
+      const bool isLikeM = strongest.Positive * inverseDiagonal[i] <= 2.0;
+      if (!(share < 1.0 - SmallestExcess) || !isLikeM || !isInside(i))
       {
         return;
       }
