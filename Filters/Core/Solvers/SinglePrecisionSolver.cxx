@@ -283,7 +283,7 @@ void SinglePrecisionSolver::CorrectByLines(const Group& group, const bool* solve
   for (int c = 0; c < group.Count; ++c)
   {
     products[c] = this->Lines && solved[c]
-      ? this->Lines->Correct(this->PlacesOnLines, this->R.data() + c * this->Matrix.PaddedRows(),
+      ? this->Lines->Correct(this->PlacesOnLines, &this->R[c * this->Matrix.PaddedRows()],
           &this->Corrections[c * count])
       : 0.0;
   }

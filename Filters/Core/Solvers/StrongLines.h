@@ -22,9 +22,8 @@ namespace SurfaceDiffusion
 /// An entry is strong if -a_ij > MinimumStrength min(a_ii, a_jj); on equilateral triangles it is a
 /// sixth of them. Each vertex names its two strongest, or as many of them as are clearly stronger
 /// than the others. Those that both ends name form lines and loops, as far as they are more than
-/// MinimumShare of the diagonal at one of their ends. Positive
-/// entries of A are added to the diagonal of M, so that M is positive definite. Over processes,
-/// lines do not touch interfaces.
+/// MinimumShare of the diagonal at one of their ends. Positive entries of A are added to the
+/// diagonal of M, so that M is positive definite. Over processes, lines do not touch interfaces.
 ///
 /// M is factorised in double precision, scaled to the unit diagonal of A, and stored in single
 /// precision as L D L^T, which is positive definite whatever is rounded.
