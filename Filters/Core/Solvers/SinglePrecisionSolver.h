@@ -62,7 +62,16 @@ public:
     int maximumNumberOfIterations, Values& x);
 
 private:
-  struct Group;
+  /// Columns that share each pass over the matrix.
+  struct Group
+  {
+    static constexpr int Most = 4;
+
+    Column* Columns;
+    int First; ///< of all columns
+    int Count;
+  };
+
   template <typename Act>
   void ForGroups(std::vector<Column>& columns, const Act& act);
   void Take(const Values& r, const Group& group);

@@ -68,14 +68,14 @@ void StrongLines::Set(
 }
 
 template <typename Act>
-void StrongLines::ForTasks(const Act& act) const
+void StrongLines::ForEachLine(const Act& act) const
 {
   ForEachTask(this->Parallel, static_cast<Index>(this->Tasks.size()) - 1,
     [&](Index task)
     {
       for (std::size_t line = this->Tasks[task]; line < this->Tasks[task + 1]; ++line)
       {
-        act(task, line);
+        act(line);
       }
     });
 }
@@ -87,8 +87,7 @@ void StrongLines::Factorize(const SparseMatrix& matrix, const Vector& inverseDia
     numbers->resize(this->Row.size());
   }
   this->Sums.resize(this->Tasks.size());
-  this->ForTasks(
-    [&](Index, std::size_t line) { this->FactorizeLine(matrix, inverseDiagonal, line); });
+  this->ForEachLine([&](std::size_t line) { this->FactorizeLine(matrix, inverseDiagonal, line); });
 }
 
 /// A row of M.
@@ -242,8 +241,8 @@ void StrongLines::Precondition(const Vector& inverseDiagonal, const Values& r, V
 {
   ForEach(this->Parallel, static_cast<Index>(r.rows()),
     [&](Index i) { z.row(i) = inverseDiagonal[i] * r.row(i); });
-  this->ForTasks(
-    [&](Index, std::size_t line)
+  this->ForEachLine(
+    [&](std::size_t line)
     {
       const std::size_t begin = this->Begin[line];
       const std::size_t end = this->Begin[line + 1];

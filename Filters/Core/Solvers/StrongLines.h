@@ -25,8 +25,8 @@ namespace SurfaceDiffusion
 /// MinimumShare of the diagonal at one of their ends. Positive entries of A are added to the
 /// diagonal of M, so that M is positive definite. Over processes, lines do not touch interfaces.
 ///
-/// M is factorised in double precision, scaled to the unit diagonal of A, and stored in single
-/// precision as L D L^T, which is positive definite whatever is rounded.
+/// M is scaled to the unit diagonal of A and factorised in double precision. The factors L D L^T
+/// are stored in single precision; since D is positive, rounding leaves M positive definite.
 class StrongLines
 {
 public:
@@ -85,7 +85,7 @@ private:
   template <typename Number>
   void SolveLine(std::size_t line, Number* x) const;
   template <typename Act>
-  void ForTasks(const Act& act) const;
+  void ForEachLine(const Act& act) const;
 
   const ParallelFor& Parallel;
   std::vector<Index> Row; ///< of the matrix

@@ -30,9 +30,11 @@ struct StrongLines::StrongestEntries
   /// numbering of the vertices.
   int NumberOfDistinct() const
   {
-    return this->Second > ClearRatio * this->Third
-      ? 2
-      : (this->First > ClearRatio * this->Second ? 1 : 0);
+    if (this->Second > ClearRatio * this->Third)
+    {
+      return 2;
+    }
+    return this->First > ClearRatio * this->Second ? 1 : 0;
   }
 };
 
