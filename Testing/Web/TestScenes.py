@@ -3,13 +3,14 @@
 """Scenes for the browser: every fourth of those that programs have written, or with SURFACEDIFFUSION_LONG
 in the environment every one, is opened from its file and turned with the mouse. Arguments: the folder
 of the programs, and the folder of the scenes."""
+import contextlib
 import os
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-from browser import difference, drag, open_browser, picture_of, wait_for
+from browser import PATIENCE, difference, drag, open_browser, picture_of, wait_for
 
 try:
     import trame_vtk  # noqa: F401
@@ -21,6 +22,7 @@ import numpy as np
 from selenium.webdriver.common.by import By
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 
+DRAGS = 4
 OUTPUT = Path(sys.argv.pop())
 sys.path.insert(0, sys.argv.pop())
 from scenes import save_scene  # noqa: E402
@@ -69,18 +71,28 @@ class TestScenes(unittest.TestCase):
         """Pictures of a scene before and after a drag of the mouse, which changes what is seen."""
         if load:
             self.browser.get(path.resolve().as_uri())
-        before = wait_for(self.picture_with_surface, f"a surface in {path.name}")
-        canvas = self.browser.find_element(By.TAG_NAME, "canvas")
-        width, height = canvas.size["width"], canvas.size["height"]
-        drag(self.browser, canvas, width // 4, 0, at=(-width * 3 // 8, -height // 8))
-        after = wait_for(lambda: self.picture_with_surface(unlike=before), "the turned surface")
+        before = wait_for(self.still_picture, f"a surface in {path.name}")
+        after = self.drag_until_unlike(before)
         problems = [entry for entry in self.browser.get_log("browser") if entry["level"] == "SEVERE"]
         self.assertEqual(problems, [])  # no error, and nothing asked from a network
         return before, after
 
-    def picture_with_surface(self, unlike=None):
-        picture = picture_of(self.browser)
-        if (picture.min(axis=2) < 200).mean() <= 0.02:
+    def drag_until_unlike(self, before):
+        """A busy page may not listen to the mouse yet."""
+        canvas = self.browser.find_element(By.TAG_NAME, "canvas")
+        width, height = canvas.size["width"], canvas.size["height"]
+        for _ in range(DRAGS):
+            drag(self.browser, canvas, width // 4, 0, at=(-width * 3 // 8, -height // 8))
+            with contextlib.suppress(AssertionError):
+                return wait_for(lambda: self.still_picture(unlike=before), "the turned surface",
+                                PATIENCE / 2)
+        raise AssertionError(f"{DRAGS} drags have not turned the surface")
+
+    def still_picture(self, unlike=None):
+        """None while the page shows no surface, or is still drawing some of them."""
+        last, picture = getattr(self, "last_picture", None), picture_of(self.browser)
+        self.last_picture = picture
+        if (picture.min(axis=2) < 200).mean() <= 0.02 or not np.array_equal(last, picture):
             return None
         return picture if unlike is None or difference(unlike, picture) > 0.01 else None
 
