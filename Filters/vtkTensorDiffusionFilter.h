@@ -35,10 +35,10 @@
  * S grad with S = sqrt(a1) e1 e1^T + sqrt(a2) e2 e2^T, and D is S D S.
  *
  * The unit of time in natural units is h^2 (h the mean edge length). Steps are semi-implicit: each
- * takes D and m at the old level and solves one linear system for the change of u. The solve ends
- * at Tolerance (default: 1e-3). A step of Beltrami costs about as
- * much as one of vtkIntrinsicTVFilter. One of CoherenceEnhancing costs about ten times as
- * much, since the structure tensor lives on edges.
+ * takes D and m at the old level and solves one linear system for the change of u, up to a residual
+ * of Tolerance (default: 1e-6), a part of that at the start. A step of Beltrami costs about as much
+ * as one of vtkIntrinsicTVFilter. One of CoherenceEnhancing costs about ten times as much, since
+ * the structure tensor lives on edges.
  *
  * Without fidelity, fixed or held values, the sum of A_i u_i is conserved to a relative error of
  * 1e-12, except by Beltrami with Metric Induced.

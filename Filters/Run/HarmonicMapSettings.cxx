@@ -6,6 +6,7 @@
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -181,7 +182,7 @@ Points HarmonicMapSettings::MovePoints(const RunState& state, VertexMotion& moti
   const Surface& surface = state.Surface;
   const TriangleMesh& mesh = surface.InputMesh();
   IterationLimits limits;
-  limits.Tolerance = this->Tolerance;
+  limits.Tolerance = std::min(this->Tolerance, ToleranceWithoutInertia);
   limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
   const Points moved = UpdateVerticesFromNormals(mesh, surface.Points(), state.Path.State(),
     UpdateRange * state.Units.MeanEdgeLength, motion, limits,

@@ -23,6 +23,8 @@ struct HarmonicMapSettings : DataSettings
   bool MoveVertices = false;
   int MaximumNumberOfRepetitions = 50; ///< of MinimizingMovement; no property
 
+  HarmonicMapSettings() { this->Tolerance = 1e-6; }
+
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;

@@ -7,6 +7,7 @@
 #include "Core/Statistics/NoiseLevel.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
+#include "Run/Rewording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,11 +31,19 @@ LinearDiffusion::Scheme SchemeOf(TimeIntegrator integrator)
   }
 }
 
+/// Ten steps with residuals of 1e-6 change values by up to 1e-5 of their range (measured).
+constexpr double ToleranceOfSteps = 0.1;
+
 } // namespace
 
 void HeatSettings::Visit(SettingVisitor& visitor)
 {
-  this->DataSettings::Visit(visitor);
+  Rewording reworded(visitor,
+    { { "Tolerance",
+      { "",
+        "The error that an iterative solver may leave in about ten steps, as a part of the range "
+        "of the data, between 0 and 1: it stops at a tenth of it as a relative residual." } } });
+  this->DataSettings::Visit(reworded);
   VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false, true });
   visitor.Choice({ "Mode", "",
                    "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the limit for "
@@ -86,6 +95,8 @@ ModelTraits HeatSettings::DescribeModel() const
       this->FWHM * this->FWHM / (16.0 * std::log(2.0)) / std::max(1, this->NumberOfTimeSteps);
     traits.AbsoluteTime = true;
   }
+  traits.Limits.Tolerance = traits.IsSteady ? std::min(this->Tolerance, ToleranceWithoutInertia)
+                                            : ToleranceOfSteps * this->Tolerance;
   traits.Time = { 2.0, 0.0 };
   traits.ResultSuffix = "Diffused";
   traits.Energy = { 0.0, 2.0 };

@@ -24,7 +24,11 @@ struct HeatSettings : DataSettings
   double NoiseLevel = 0.0;
   BlurSettings Blur;
 
-  HeatSettings() { this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic; }
+  HeatSettings()
+  {
+    this->Tolerance = 1e-6;
+    this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic;
+  }
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;

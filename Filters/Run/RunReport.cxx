@@ -15,10 +15,10 @@ namespace SurfaceDiffusion
 namespace
 {
 
-Sentence DescribeMissedTolerance(const Shortfalls& found, double tolerance)
+Sentence DescribeMissedTolerance(const Shortfalls& found)
 {
   Sentence text("the linear solver missed its ");
-  text << Word::Setting("Tolerance") << " " << tolerance << " in ";
+  text << Word::Setting("Tolerance") << " in ";
   if (found.MissedSteps > 0)
   {
     text << found.MissedSteps << " of " << found.Steps << " steps";
@@ -268,9 +268,8 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
   const Shortfalls shortfalls = this->FindShortfalls();
   if (shortfalls.MissedResidual > 0.0)
   {
-    const double tolerance = this->Settings->DescribeModel().Limits.Tolerance;
     warnings.push_back(
-      { DescribeMissedTolerance(shortfalls, tolerance), shortfalls.Inputs, "MissedResidual" });
+      { DescribeMissedTolerance(shortfalls), shortfalls.Inputs, "MissedResidual" });
   }
   if (shortfalls.UnsettledDecrease > 0.0)
   {

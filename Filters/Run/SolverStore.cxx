@@ -62,7 +62,12 @@ bool SolverStore::ServesRunOf(int numberOfSteps) const
 std::shared_ptr<LinearSolver> SolverStore::Find(
   SolverPurpose purpose, SolverTask task, double solvesPerStep)
 {
-  task.Tolerance = this->Limits.Tolerance;
+  IterationLimits limits = this->Limits;
+  if (purpose == SolverPurpose::Fill)
+  {
+    limits.Tolerance = std::min(limits.Tolerance, ToleranceWithoutInertia);
+  }
+  task.Tolerance = limits.Tolerance;
   Kept& kept = this->Solvers[static_cast<std::size_t>(purpose)];
   if (!this->OverProcesses->IsSerial())
   {
@@ -79,7 +84,7 @@ std::shared_ptr<LinearSolver> SolverStore::Find(
   kept.Task = task;
   kept.SolvesPerStep = solvesPerStep;
   kept.IsUsed = true;
-  kept.Solver->SetLimits(this->Limits);
+  kept.Solver->SetLimits(limits);
   return kept.Solver;
 }
 

@@ -32,7 +32,7 @@ struct TensorDiffusionSettings : DataSettings
 
   TensorDiffusionSettings()
   {
-    this->Tolerance = 1e-3;
+    this->Tolerance = 1e-6;
     this->InitialFill = SurfaceDiffusion::InitialFill::Harmonic; // jumps at holes would be kept
   }
 

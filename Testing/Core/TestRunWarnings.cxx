@@ -90,7 +90,7 @@ TEST(RunWarnings, AFactorisationAboveTheToleranceIsReported)
   settings.Solver = SolverMethod::Direct;
   settings.Tolerance = 1e-30;
   ExpectOne(WarningsOf(RunInput(Testing::Icosphere(3)), settings),
-    { "linear solver missed its Tolerance 1e-30 in 10 of 10 steps", "largest relative residual" });
+    { "linear solver missed its Tolerance in 10 of 10 steps", "largest relative residual" });
 }
 
 TEST(RunWarnings, AConvergedRunIsSilent)
@@ -128,7 +128,7 @@ TEST(RunWarnings, AVertexFitThatMissesTheToleranceIsReported)
   settings.Tolerance = 1e-30;
   settings.MaximumNumberOfIterations = 5;
   ExpectOne(WarningsOf(NoisyNormals(), settings),
-    { "linear solver missed its Tolerance 1e-30 in filling in missing values or moving vertices",
+    { "linear solver missed its Tolerance in filling in missing values or moving vertices",
       "largest relative residual" });
 }
 

@@ -4,6 +4,7 @@
 
 #include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
+#include "vtkMath.h"
 
 #include <gtest/gtest.h>
 
@@ -78,6 +79,33 @@ TEST(HeatFilter, HeldValuesKeepTheirBitsAndALinearFunctionIsFilledExactly)
     {
       EXPECT_EQ(Result(filter)->GetComponent(i, 0), f->GetComponent(i, 0));
     }
+  }
+}
+
+TEST(HeatFilter, ToleranceBoundsTheErrorOfTenStepsAlsoBesideALargeHole)
+{
+  const auto sphere = Sphere(6);
+  vtkDataArray* const f = AddPointArray(
+    sphere, "f", 1, [&](vtkIdType i, int) { return sphere->GetPoint(i)[0] + 0.3 * Rough(i, 0); });
+  sphere->GetPointData()->SetActiveScalars("f");
+  for (const bool hasHole : { false, true })
+  {
+    for (vtkIdType i = 0; hasHole && i < f->GetNumberOfTuples(); ++i)
+    {
+      if (sphere->GetPoint(i)[2] < 0.8)
+      {
+        f->SetComponent(i, 0, vtkMath::Nan());
+      }
+    }
+    const auto exact = MakeFilter(sphere);
+    exact->SetSolverToDirect();
+    exact->Update();
+    const auto filter = MakeFilter(sphere);
+    filter->SetSolverToConjugateGradient();
+    filter->Update();
+    const double error = LargestDifference(Result(filter), Result(exact)) / filter->GetValueRange();
+    EXPECT_GT(error, 1e-9) << "there is nothing to bound";
+    EXPECT_LT(error, 1.5 * filter->GetTolerance());
   }
 }
 

@@ -59,11 +59,6 @@ const std::map<std::string, int> LargestNumbers = {
   { "MumfordShahOfCells", 60 },
   { "MumfordShahWeighted", 120 }, // solved to 1e-3, as with missing values
   { "MumfordShahGiven", 16 },
-  // One solve of an anisotropy of b^2 |grad u|^2, with a large time step in the second.
-  { "Beltrami", 20 },
-  { "BeltramiOfCells", 20 },
-  { "BeltramiWeighted", 20 },
-  { "BeltramiFixed", 100 },
   // The solves on the coarse space, which has few unknowns.
   { "TuringCoarseStart", 12 },
 };
