@@ -72,7 +72,8 @@ private:
   static constexpr double SmallestExcess = 1e-6;
 
   void Reserve(std::size_t n);
-  bool MayHaveLines(const SparseMatrix& matrix, const Vector& inverseDiagonal) const;
+  bool MayHaveLines(const SparseMatrix& matrix, const Vector& inverseDiagonal);
+  bool MayBeOnLine(const SparseMatrix& matrix, Index i) const;
   void NameNeighbors(
     const SparseMatrix& matrix, const Vector& inverseDiagonal, const Reduction& overProcesses);
   bool AreMutual(Index i, int side) const;

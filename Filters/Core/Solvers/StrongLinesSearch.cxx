@@ -16,14 +16,29 @@ constexpr double ClearRatio = 1.37;
 
 } // namespace
 
-/// The two strongest negative entries of a row, and the third.
+/// The three strongest negative entries of a row, or zeros.
 struct StrongLines::StrongestEntries
 {
-  Pair Columns = { None, None };
   double First = 0.0, Second = 0.0, Third = 0.0;
   double Positive = 0.0; ///< the sum of the positive ones, with the diagonal
 
-  StrongestEntries(const SparseMatrix& matrix, Index i);
+  /// Without branches, since the order of the entries is that of chance.
+  StrongestEntries(const SparseMatrix& matrix, Index i)
+  {
+    const double* const values = matrix.valuePtr();
+    const Index* const outer = matrix.outerIndexPtr();
+    for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+    {
+      const double a = values[slot];
+      const double entry = std::max(0.0, -a); // 0 if a is not a number
+      const double behindFirst = std::min(this->First, entry);
+      const double behindSecond = std::min(this->Second, behindFirst);
+      this->First = std::max(this->First, entry);
+      this->Second = std::max(this->Second, behindFirst);
+      this->Third = std::max(this->Third, behindSecond);
+      this->Positive += std::max(a, 0.0);
+    }
+  }
 
   double Size(int number) const { return number == 0 ? this->First : this->Second; }
   /// How many stand out from the others: which of equal ones came first would depend on the
@@ -36,48 +51,50 @@ struct StrongLines::StrongestEntries
     }
     return this->First > ClearRatio * this->Second ? 1 : 0;
   }
+  Pair FindColumns(const SparseMatrix& matrix, Index i) const
+  {
+    const double* const values = matrix.valuePtr();
+    const Index* const outer = matrix.outerIndexPtr();
+    Pair columns = { None, None };
+    for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+    {
+      const double entry = -values[slot];
+      if (entry >= this->Second && entry > 0.0)
+      {
+        const bool isFirst = entry == this->First && columns[0] == None;
+        columns[isFirst ? 0 : 1] = matrix.innerIndexPtr()[slot];
+      }
+    }
+    return columns;
+  }
 };
 
-StrongLines::StrongestEntries::StrongestEntries(const SparseMatrix& matrix, Index i)
+/// Mark the vertices whose two strongest entries are enough. False if there are none, as on even
+/// meshes.
+bool StrongLines::MayHaveLines(const SparseMatrix& matrix, const Vector& inverseDiagonal)
 {
-  const Index* const inner = matrix.innerIndexPtr();
-  const double* const values = matrix.valuePtr();
-  double first = 0.0;
-  double second = 0.0;
-  double third = 0.0;
-  double positive = 0.0;
-  Index ofFirst = None;
-  Index ofSecond = None;
-  for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
-  {
-    const Index j = inner[slot];
-    const double entry = -values[slot]; // negative on the diagonal
-    positive += std::max(-entry, 0.0);
-    const bool isFirst = entry > first;
-    const bool isSecond = entry > second;
-    third = isSecond ? second : std::max(third, entry);
-    ofSecond = isFirst ? ofFirst : (isSecond ? j : ofSecond);
-    second = isFirst ? first : (isSecond ? entry : second);
-    ofFirst = isFirst ? j : ofFirst;
-    first = isFirst ? entry : first;
-  }
-  this->Columns = { ofFirst, ofSecond };
-  this->First = first;
-  this->Second = second;
-  this->Third = third;
-  this->Positive = positive;
-}
-
-/// False if no row has strong entries enough, as on even meshes.
-bool StrongLines::MayHaveLines(const SparseMatrix& matrix, const Vector& inverseDiagonal) const
-{
-  const double largest = Max(this->Parallel, static_cast<Index>(matrix.rows()),
+  const auto n = static_cast<Index>(matrix.rows());
+  this->Pays.resize(n);
+  const double largest = Max(this->Parallel, n,
     [&](Index i)
     {
       const StrongestEntries strongest(matrix, i);
-      return (strongest.First + strongest.Second) * inverseDiagonal[i];
+      const double share = (strongest.First + strongest.Second) * inverseDiagonal[i];
+      this->Pays[i] = share > MinimumShare ? 1 : 0;
+      return share;
     });
   return largest > MinimumShare;
+}
+
+/// Whether a line may pass through vertex i, by the marks of MayHaveLines().
+bool StrongLines::MayBeOnLine(const SparseMatrix& matrix, Index i) const
+{
+  char pays = 0;
+  for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
+  {
+    pays |= this->Pays[a.index()];
+  }
+  return pays != 0;
 }
 
 void StrongLines::NameNeighbors(
@@ -90,8 +107,12 @@ void StrongLines::NameNeighbors(
   ForEach(this->Parallel, n,
     [&](Index i)
     {
-      const StrongestEntries strongest(matrix, i);
       this->Named[i] = { None, None };
+      if (!this->MayBeOnLine(matrix, i))
+      {
+        return;
+      }
+      const StrongestEntries strongest(matrix, i);
       const double share = (strongest.First + strongest.Second) * inverseDiagonal[i];
       // Positive entries above the diagonal would make M another matrix than A.
       const bool isLikeM = strongest.Positive * inverseDiagonal[i] <= 2.0;
@@ -99,9 +120,10 @@ void StrongLines::NameNeighbors(
       {
         return;
       }
+      const Pair columns = strongest.FindColumns(matrix, i);
       for (int k = 0; k < strongest.NumberOfDistinct(); ++k)
       {
-        const Index j = strongest.Columns[k];
+        const Index j = columns[k];
         if (j != None && isInside(j) &&
           strongest.Size(k) * std::max(inverseDiagonal[i], inverseDiagonal[j]) > MinimumStrength)
         {
