@@ -127,8 +127,9 @@ void DiffusionPanel::FillSecond(const Values& u, double ratio, double dt)
       for (int k = 0; k < columns; ++k)
       {
         const double previous = value[k] - origin[k];
-        v[k] += shifts[k];
-        b[k] = previous + ratio * (v[k] - previous);
+        const double later = ratio * (v[k] + shifts[k] - previous);
+        b[k] = previous + later;
+        v[k] += shifts[k] + later;
       }
       if (source > 0.0)
       {

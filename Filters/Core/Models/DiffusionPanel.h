@@ -29,6 +29,8 @@ public:
     const Values& u, Eigen::Index first, Eigen::Index count, double inertia, double dt);
 
   /// After the first stage: RightHandSide = M (u + ratio (Solution - u) + dt lambda chi f).
+  /// Solution is extrapolated linearly to the end of the step, from where a solve needs a tenth
+  /// fewer iterations.
   void StartSecondStage(const Values& u, double ratio, double dt);
 
   /// After StartStage(): the sum of an ExponentialSeries, of which the term T_0 is Solution.
