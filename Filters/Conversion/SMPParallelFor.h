@@ -11,8 +11,10 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -32,6 +34,23 @@ public:
     /// The largest number of VTK's threads; 0: all of its back end.
     int Limit = 0;
     std::unique_ptr<ThreadPool> Pool; ///< the own threads, from the first long loop on
+  };
+
+  /// Makes a team that of this thread, until the scope ends.
+  class TeamScope
+  {
+  public:
+    explicit TeamScope(Team& team)
+      : Before(TeamOfThisThread())
+    {
+      TeamOfThisThread() = &team;
+    }
+    ~TeamScope() { TeamOfThisThread() = this->Before; }
+    TeamScope(const TeamScope&) = delete;
+    TeamScope& operator=(const TeamScope&) = delete;
+
+  private:
+    Team* const Before;
   };
 
   void Run(Index count, LoopBody body) const override
@@ -68,11 +87,21 @@ public:
     }
   }
 
-  /// Null, as outside of updates: all threads of VTK.
-  static Team*& TeamOfThisThread()
+  std::function<void()> ForOtherThread(std::function<void()> task) const override
   {
-    static thread_local Team* team = nullptr;
-    return team;
+    const Team* const here = TeamOfThisThread();
+    if (!here)
+    {
+      return task;
+    }
+    return [task = std::move(task), own = here->Own, limit = here->Limit]
+    {
+      Team there; // the update may end before the task
+      there.Own = own;
+      there.Limit = limit;
+      const TeamScope scope(there);
+      task();
+    };
   }
 
   /// The object that all share, because the core keeps references to it.
@@ -83,6 +112,13 @@ public:
   }
 
 private:
+  /// Null, as outside of updates: all threads of VTK.
+  static Team*& TeamOfThisThread()
+  {
+    static thread_local Team* team = nullptr;
+    return team;
+  }
+
   static bool HasOwnThreads() { return TeamOfThisThread() && TeamOfThisThread()->Own > 0; }
 
   static const ThreadPool& OwnThreads()

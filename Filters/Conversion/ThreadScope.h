@@ -25,7 +25,6 @@ class ThreadScope
 {
 public:
   ThreadScope(int number, bool severalProcesses)
-    : Before(SMPParallelFor::TeamOfThisThread())
   {
     this->Team.Limit = number;
     if (number == 1)
@@ -37,13 +36,7 @@ public:
       // Several processes divide the processors among them already.
       this->Team.Own = severalProcesses && number == 0 ? 1 : NumberOfOwnThreads(number);
     }
-    SMPParallelFor::TeamOfThisThread() = &this->Team;
   }
-
-  ~ThreadScope() { SMPParallelFor::TeamOfThisThread() = this->Before; }
-
-  ThreadScope(const ThreadScope&) = delete;
-  ThreadScope& operator=(const ThreadScope&) = delete;
 
 private:
   /// Whether the back end is Sequential and nobody has chosen it: it is VTK's default, the
@@ -74,7 +67,7 @@ private:
   }
 
   SMPParallelFor::Team Team;
-  SMPParallelFor::Team* const Before;
+  const SMPParallelFor::TeamScope Scope{ this->Team };
 };
 
 } // namespace SurfaceDiffusion

@@ -247,8 +247,8 @@ void Surface::Build(
   }
   else
   {
-    RunInBackground([construction, options, &parallel]
-      { construction->Run(options, parallel, ProgressMonitor()); },
+    RunInBackground(parallel.ForOtherThread([construction, options, &parallel]
+                      { construction->Run(options, parallel, ProgressMonitor()); }),
       progress);
   }
   this->Arrays.Points.swap(construction->Coordinates);

@@ -128,11 +128,12 @@ void TotalVariationModels::MakeEdges()
 {
   const auto edges = std::make_shared<EdgeUnknowns>();
   RunInBackground(
-    [edges, mesh = this->Inputs.Surface.SharedMesh(), &parallel = this->Inputs.Parallel]
-    {
-      edges->Mesh = std::make_shared<MedialMesh>(*mesh);
-      edges->Operators = std::make_shared<Assembler>(edges->Mesh->Edges(), parallel);
-    },
+    this->Inputs.Parallel.ForOtherThread(
+      [edges, mesh = this->Inputs.Surface.SharedMesh(), &parallel = this->Inputs.Parallel]
+      {
+        edges->Mesh = std::make_shared<MedialMesh>(*mesh);
+        edges->Operators = std::make_shared<Assembler>(edges->Mesh->Edges(), parallel);
+      }),
     this->Inputs.Progress.Part(0.1, 0.5));
   this->Edges = edges;
 }

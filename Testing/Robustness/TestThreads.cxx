@@ -4,6 +4,7 @@
 #include "AllFilters.h"
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/ThreadScope.h"
+#include "Core/Foundation/ProgressMonitor.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFVMHeatFilter.h"
@@ -144,6 +145,17 @@ bool HasThreads(int number, bool severalProcesses = false)
   return RunsTwoTasksAtOnce(std::chrono::seconds(20)); // on a loaded machine
 }
 
+/// The same of a task on another thread, as that which builds a large surface.
+bool HasThreadsInBackground(int number, std::chrono::milliseconds patience)
+{
+  const SurfaceDiffusion::ThreadScope scope(number, false);
+  bool found = false;
+  SurfaceDiffusion::RunInBackground(SurfaceDiffusion::SMPParallelFor::Instance().ForOtherThread(
+                                      [&] { found = RunsTwoTasksAtOnce(patience); }),
+    SurfaceDiffusion::ProgressMonitor());
+  return found;
+}
+
 bool IsAlone(int number, bool severalProcesses = false)
 {
   const SurfaceDiffusion::ThreadScope scope(number, severalProcesses);
@@ -183,6 +195,20 @@ TEST(Threads, AreTheFiltersOwnWhereVTKIsSequentialByDefault)
   ExpectInNewProgram(nothing, [] { return IsAlone(0, true) && HasThreads(2, true); });
   ExpectInNewProgram(
     nothing, [] { return HasThreads(0) && !RunsTwoTasksAtOnce(std::chrono::milliseconds(300)); });
+}
+
+TEST(Threads, AreTheFiltersOwnInTheBackgroundToo)
+{
+  if (!IsSequentialByDefault())
+  {
+    GTEST_SKIP() << "VTK has another back end by default, or there is one processor";
+  }
+  ExpectInNewProgram([] {},
+    []
+    {
+      return HasThreadsInBackground(0, std::chrono::seconds(20)) &&
+        !HasThreadsInBackground(1, std::chrono::milliseconds(300));
+    });
 }
 
 TEST(Threads, AreThoseThatTheUserHasChosen)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <type_traits>
 #include <utility>
 
@@ -43,6 +44,10 @@ public:
 
   /// The same for a few long tasks. Run() may take a short loop to be not worth its threads.
   virtual void RunTasks(Index count, LoopBody body) const { body(0, count); }
+
+  /// The same task for another thread: its loops run there on as many threads as loops that start
+  /// here.
+  virtual std::function<void()> ForOtherThread(std::function<void()> task) const { return task; }
 };
 
 /// The serial loop: the default argument everywhere, which may be kept by reference.
