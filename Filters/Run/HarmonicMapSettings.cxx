@@ -6,7 +6,6 @@
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -181,9 +180,7 @@ Points HarmonicMapSettings::MovePoints(const RunState& state, VertexMotion& moti
 {
   const Surface& surface = state.Surface;
   const TriangleMesh& mesh = surface.InputMesh();
-  IterationLimits limits;
-  limits.Tolerance = std::min(this->Tolerance, ToleranceWithoutInertia);
-  limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;
+  const IterationLimits limits = WithoutInertia(this->DescribeModel().Limits);
   const Points moved = UpdateVerticesFromNormals(mesh, surface.Points(), state.Path.State(),
     UpdateRange * state.Units.MeanEdgeLength, motion, limits,
     this->Solver != SolverMethod::ConjugateGradient, state.Parallel, state.Progress);

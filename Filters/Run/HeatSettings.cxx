@@ -95,8 +95,15 @@ ModelTraits HeatSettings::DescribeModel() const
       this->FWHM * this->FWHM / (16.0 * std::log(2.0)) / std::max(1, this->NumberOfTimeSteps);
     traits.AbsoluteTime = true;
   }
-  traits.Limits.Tolerance = traits.IsSteady ? std::min(this->Tolerance, ToleranceWithoutInertia)
-                                            : ToleranceOfSteps * this->Tolerance;
+  if (traits.IsSteady)
+  {
+    traits.Limits = WithoutInertia(traits.Limits);
+  }
+  else
+  {
+    traits.Limits.AskedTolerance = this->Tolerance;
+    traits.Limits.Tolerance = ToleranceOfSteps * this->Tolerance;
+  }
   traits.Time = { 2.0, 0.0 };
   traits.ResultSuffix = "Diffused";
   traits.Energy = { 0.0, 2.0 };

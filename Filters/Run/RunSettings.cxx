@@ -140,6 +140,13 @@ void TimeSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
   }
 }
 
+IterationLimits WithoutInertia(IterationLimits limits)
+{
+  limits.AskedTolerance = std::min(std::max(limits.AskedTolerance, limits.Tolerance), 1e-6);
+  limits.Tolerance = std::min(limits.Tolerance, 1e-10);
+  return limits;
+}
+
 ModelTraits TimeSettings::DescribeSteps(bool steady) const
 {
   ModelTraits traits;

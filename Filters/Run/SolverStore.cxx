@@ -62,11 +62,8 @@ bool SolverStore::ServesRunOf(int numberOfSteps) const
 std::shared_ptr<LinearSolver> SolverStore::Find(
   SolverPurpose purpose, SolverTask task, double solvesPerStep)
 {
-  IterationLimits limits = this->Limits;
-  if (purpose == SolverPurpose::Fill)
-  {
-    limits.Tolerance = std::min(limits.Tolerance, ToleranceWithoutInertia);
-  }
+  const IterationLimits limits =
+    purpose == SolverPurpose::Fill ? WithoutInertia(this->Limits) : this->Limits;
   task.Tolerance = limits.Tolerance;
   Kept& kept = this->Solvers[static_cast<std::size_t>(purpose)];
   if (!this->OverProcesses->IsSerial())

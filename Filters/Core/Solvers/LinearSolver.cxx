@@ -30,8 +30,9 @@ NotConverged::NotConverged(const SolveReport& report)
 
 void RequireAnswer(const SolveReport& report, const IterationLimits& limits)
 {
+  const double largest = AnswerFactor * std::max(limits.Tolerance, limits.AskedTolerance);
   // Negated: a residual that is not a number is no answer.
-  if (!report.Converged && !report.IsFinal && !(report.Residual <= AnswerFactor * limits.Tolerance))
+  if (!report.Converged && !report.IsFinal && !(report.Residual <= largest))
   {
     throw NotConverged(report);
   }

@@ -35,6 +35,7 @@ struct IterationLimits
   int MaximumNumberOfIterations = 1000;
   /// End as soon as the rate of convergence shows that these iterations are not enough.
   bool StopsEarly = false;
+  double AskedTolerance = 0.0; ///< by the user, if it is larger; see RequireAnswer()
 };
 
 /// Conjugate gradients take no step along p if p.A p is not above this share of p.diag(A) p: it is
@@ -51,8 +52,8 @@ struct NotConverged : std::runtime_error
 /// An answer within AnswerFactor times the tolerance is used, and the run says so in a warning.
 constexpr double AnswerFactor = 10.0;
 
-/// Throws NotConverged unless the residual is within AnswerFactor times the tolerance or the report
-/// is final.
+/// Throws NotConverged unless the residual is within AnswerFactor times the larger tolerance or the
+/// report is final.
 void RequireAnswer(const SolveReport& report, const IterationLimits& limits);
 
 /// Solves A x = b for symmetric positive definite matrices of one pattern. After a solve that
