@@ -100,12 +100,14 @@ public:
   ///@{
   /**
    * The relative residual, in the norm of the inverse diagonal, at which iterative solvers stop, in
-   * (0, 1), and the largest number of iterations, 1 or more. A solve that does not converge within
-   * them is an error. Default: 1e-6 (1e-10 in vtkTuringTextureFilter, whose instability amplifies
-   * errors, 1e-3 in vtkIntrinsicTVFilter, 0.1 in vtkMumfordShahFilter), 1000. vtkFVMHeatFilter
-   * stops at a tenth of Tolerance, which then bounds the error of about ten steps as a part of the
-   * range of the data. The harmonic function that fills holes, and a steady state of
-   * vtkFVMHeatFilter, are solved to 1e-10 or better, since their errors exceed residuals by far.
+   * (0, 1), and the largest number of iterations, 1 or more. A solve that stops above ten times
+   * Tolerance is an error, and one that stops above it gives a warning. Default: 1e-6 (1e-10 in
+   * vtkTuringTextureFilter, whose instability amplifies errors, 1e-3 in vtkIntrinsicTVFilter, 0.1
+   * in vtkMumfordShahFilter), 1000. Two kinds of solves go on to less. A step of vtkFVMHeatFilter
+   * goes on to a tenth of it, or less where triangles are much smaller than on average, but not
+   * below 1e-10, so that ten steps change by about Tolerance times the range of the data. The
+   * harmonic function that fills holes, and a steady state of vtkFVMHeatFilter, go on to 1e-10,
+   * since their errors exceed residuals by far.
    */
   SURFACEDIFFUSION_PROPERTY(Tolerance, double);
   SURFACEDIFFUSION_PROPERTY(MaximumNumberOfIterations, int);

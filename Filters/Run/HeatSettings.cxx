@@ -31,8 +31,24 @@ LinearDiffusion::Scheme SchemeOf(TimeIntegrator integrator)
   }
 }
 
-/// Ten steps with residuals of 1e-6 change values by up to 1e-5 of their range (measured).
-constexpr double ToleranceOfSteps = 0.1;
+/// Ten steps with residuals of 1e-6 change values by up to 1e-5 of their range (measured), and by
+/// more where triangles are small: share is the root of the smallest control area over that of an
+/// even mesh.
+void TightenSteps(IterationLimits& limits, double share)
+{
+  const double asked = std::max(limits.Tolerance, limits.AskedTolerance);
+  limits.AskedTolerance = asked;
+  limits.Tolerance = std::max(0.1 * share * asked, std::min(asked, 1e-10));
+}
+
+double ShareOfSmallTriangles(const TriangleMesh& mesh, double h, const ParallelFor& parallel)
+{
+  const Vector& areas = mesh.ControlAreas();
+  double opposite =
+    Max(parallel, mesh.NumberOfVertices(), [&](Index i) { return 1.0 - areas[i] / (0.5 * h * h); });
+  mesh.GetReduction().Max(&opposite, 1);
+  return std::sqrt(std::min(std::max(1.0 - opposite, 0.0), 1.0));
+}
 
 } // namespace
 
@@ -42,7 +58,8 @@ void HeatSettings::Visit(SettingVisitor& visitor)
     { { "Tolerance",
       { "",
         "The error that an iterative solver may leave in about ten steps, as a part of the range "
-        "of the data, between 0 and 1: it stops at a tenth of it as a relative residual." } } });
+        "of the data, between 0 and 1. It stops at a relative residual of a tenth of it, or less "
+        "where triangles are much smaller than on average." } } });
   this->DataSettings::Visit(reworded);
   VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false, true });
   visitor.Choice({ "Mode", "",
@@ -101,8 +118,7 @@ ModelTraits HeatSettings::DescribeModel() const
   }
   else
   {
-    traits.Limits.AskedTolerance = this->Tolerance;
-    traits.Limits.Tolerance = ToleranceOfSteps * this->Tolerance;
+    TightenSteps(traits.Limits, 1.0);
   }
   traits.Time = { 2.0, 0.0 };
   traits.ResultSuffix = "Diffused";
@@ -228,9 +244,16 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
     effective = settings.Fidelity / fidelityUnit;
   }
   result.AddNumber("EffectiveFidelityWeight", effective);
+  auto solver = inputs.Solvers.Find(SolverPurpose::Step, task, solvesPerStep);
+  if (this->Mode == HeatMode::TimeSteps)
+  {
+    IterationLimits limits = solver->GetLimits();
+    TightenSteps(limits, ShareOfSmallTriangles(mesh, h, inputs.Parallel));
+    solver->SetLimits(limits);
+    settings.SufficientResidual = limits.AskedTolerance;
+  }
   return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
-    std::move(inputs.Data), settings, inputs.Solvers.Find(SolverPurpose::Step, task, solvesPerStep),
-    inputs.Parallel);
+    std::move(inputs.Data), settings, std::move(solver), inputs.Parallel);
 }
 
 } // namespace SurfaceDiffusion

@@ -17,8 +17,7 @@ namespace
 
 Sentence DescribeMissedTolerance(const Shortfalls& found)
 {
-  Sentence text("the linear solver missed its ");
-  text << Word::Setting("Tolerance") << " in ";
+  Sentence text("the linear solver missed its tolerance in ");
   if (found.MissedSteps > 0)
   {
     text << found.MissedSteps << " of " << found.Steps << " steps";

@@ -142,7 +142,7 @@ void TimeSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
 
 IterationLimits WithoutInertia(IterationLimits limits)
 {
-  limits.AskedTolerance = std::min(std::max(limits.AskedTolerance, limits.Tolerance), 1e-6);
+  limits.AskedTolerance = std::min(std::max(limits.AskedTolerance, limits.Tolerance), 1e-3);
   limits.Tolerance = std::min(limits.Tolerance, 1e-10);
   return limits;
 }

@@ -62,8 +62,8 @@ void RequireDirections(const FieldSummary& fields, const char* along, double ofA
   const char* across, double ofAcross, Problems& problems);
 
 /// For systems without inertia, whose errors exceed residuals by far: a hole in nine tenths of a
-/// sphere, filled to 1e-6, is off by 1e-3 of the range (41k vertices). They are solved to 1e-10; an
-/// answer of 1e-5, as conjugate gradients give on the largest surfaces, has a warning.
+/// sphere, filled to 1e-6, is off by 1e-3 of the range (41k vertices). They are solved to 1e-10;
+/// what conjugate gradients reach on the largest surfaces is an answer with a warning.
 IterationLimits WithoutInertia(IterationLimits limits);
 
 /// The properties of a model that a run needs before it makes the model. By default it has no time:

@@ -90,7 +90,7 @@ TEST(RunWarnings, AFactorisationAboveTheToleranceIsReported)
   settings.Solver = SolverMethod::Direct;
   settings.Tolerance = 1e-30;
   ExpectOne(WarningsOf(RunInput(Testing::Icosphere(3)), settings),
-    { "linear solver missed its Tolerance in 10 of 10 steps", "largest relative residual" });
+    { "linear solver missed its tolerance in 10 of 10 steps", "largest relative residual" });
 }
 
 TEST(RunWarnings, AConvergedRunIsSilent)
@@ -106,7 +106,7 @@ TEST(RunWarnings, TangentSpacesInWhichNeitherPreconditionerConvergesAreReported)
   settings.TimeStep = 10.0;
   settings.MaximumNumberOfIterations = 2;
   ExpectOne(
-    WarningsOf(NoisyNormals(), settings), { "linear solver missed its Tolerance", "2 of 2 steps" });
+    WarningsOf(NoisyNormals(), settings), { "linear solver missed its tolerance", "2 of 2 steps" });
 }
 
 TEST(RunWarnings, AStepOfMinimizingMovementThatDoesNotSettleIsReported)
@@ -128,7 +128,7 @@ TEST(RunWarnings, AVertexFitThatMissesTheToleranceIsReported)
   settings.Tolerance = 1e-30;
   settings.MaximumNumberOfIterations = 5;
   ExpectOne(WarningsOf(NoisyNormals(), settings),
-    { "linear solver missed its Tolerance in filling in missing values or moving vertices",
+    { "linear solver missed its tolerance in filling in missing values or moving vertices",
       "largest relative residual" });
 }
 

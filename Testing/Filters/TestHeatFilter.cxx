@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
 #include "vtkMath.h"
@@ -106,6 +107,45 @@ TEST(HeatFilter, ToleranceBoundsTheErrorOfTenStepsAlsoBesideALargeHole)
     const double error = LargestDifference(Result(filter), Result(exact)) / filter->GetValueRange();
     EXPECT_GT(error, 1e-9) << "there is nothing to bound";
     EXPECT_LT(error, 1.5 * filter->GetTolerance());
+  }
+}
+
+TEST(HeatFilter, ToleranceBoundsTheErrorOnSmallComponentsToo)
+{
+  const auto spheres = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkAppendPolyData> append;
+  for (const double size : { 1.0, 0.01 })
+  {
+    const auto sphere = Sphere(5);
+    for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
+    {
+      double x[3];
+      sphere->GetPoint(i, x);
+      sphere->GetPoints()->SetPoint(i, size * x[0] + 3.0 * size, size * x[1], size * x[2]);
+    }
+    append->AddInputData(sphere);
+  }
+  append->Update();
+  spheres->ShallowCopy(append->GetOutput());
+  AddPointArray(spheres, "f", 1, [&](vtkIdType i, int) { return Rough(i, 0); });
+  spheres->GetPointData()->SetActiveScalars("f");
+  for (const bool isSteady : { false, true })
+  {
+    const auto exact = MakeFilter(spheres);
+    const auto filter = MakeFilter(spheres);
+    for (vtkFVMHeatFilter* const each : { exact.Get(), filter.Get() })
+    {
+      each->SetTimeStep(0.01);
+      each->SetMode(isSteady);
+      each->SetFidelityWeight(isSteady ? 0.1 : 0.0);
+    }
+    exact->SetSolverToDirect();
+    exact->Update();
+    filter->SetSolverToConjugateGradient();
+    filter->Update();
+    const double error = LargestDifference(Result(filter), Result(exact)) / filter->GetValueRange();
+    EXPECT_GT(error, 0.0);
+    EXPECT_LT(error, isSteady ? 1e-9 : filter->GetTolerance());
   }
 }
 

@@ -111,7 +111,7 @@ TEST(TensorDiffusionFilter, ToleranceOfStepsDoesNotFillHoles)
   filter->Update();
   EXPECT_TRUE(messages.Errors.empty());
   ASSERT_EQ(messages.Warnings.size(), 1u);
-  EXPECT_NE(messages.Warnings[0].find("missed its Tolerance in filling in"), std::string::npos)
+  EXPECT_NE(messages.Warnings[0].find("missed its tolerance in filling in"), std::string::npos)
     << messages.Warnings[0];
 }
 

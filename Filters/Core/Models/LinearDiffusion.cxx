@@ -175,6 +175,10 @@ void LinearDiffusion::Solve(StepReport& report, const ProgressMonitor& progress)
 {
   this->System.Solve(
     this->Panel.RightHandSide, this->Panel.Solution, report, progress, this->Panel.First());
+  if (report.MissedResidual <= this->Options.SufficientResidual)
+  {
+    report.MissedResidual = 0.0;
+  }
   this->Panel.Correct(this->Balanced);
 }
 

@@ -37,6 +37,8 @@ public:
     double TimeStep = 1.0; ///< in LengthUnit()^2
     double Fidelity = 0.0; ///< lambda, in 1/LengthUnit()^2
     Scheme TimeScheme = Scheme::SDIRK2;
+    /// Up to here a residual above the tolerance of the solver is not reported as missed.
+    double SufficientResidual = 0.0;
 
     /// The factor of K in the matrix: both stages of SDIRK2 share M + gamma dt K with
     /// gamma = 1 - 1/sqrt(2) (R. Alexander, SIAM J. Numer. Anal. 14, 1977).
