@@ -83,9 +83,10 @@ class TestFaces(unittest.TestCase):
     def test_many_columns_are_those_of_single_runs(self):
         many = np.random.default_rng(1).normal(size=(self.surface.n_faces, 40))
         for on_faces in (True, False):
-            result = heat(self.surface, many, result_on_faces=on_faces, time_step=1)
-            np.testing.assert_array_equal(
-                result[:, 35], heat(self.surface, many[:, 35], result_on_faces=on_faces, time_step=1))
+            # "Automatic" may solve one column by another method.
+            options = {"result_on_faces": on_faces, "time_step": 1, "solver": "Direct"}
+            np.testing.assert_array_equal(heat(self.surface, many, **options)[:, 35],
+                                          heat(self.surface, many[:, 35], **options))
 
     def test_equal_numbers_mean_points_unless_the_keyword_says_otherwise(self):
         torus = quad_torus()

@@ -61,7 +61,7 @@ MODEL = dict(Units="Natural", MaskMode="Inpaint", RandomSeed=0, IntrinsicDelauna
              OutputPrecision="Input", **SURFACE)
 STEPS = dict(
     TimeStep=1.0, NumberOfTimeSteps=10, GenerateTimeSteps=False, OutputInterval=1,
-    CheckpointMemoryLimit=512, Solver="Automatic", Tolerance=1e-10,
+    CheckpointMemoryLimit=512, Solver="Automatic", Tolerance=1e-6,
     MaximumNumberOfIterations=1000, **MODEL)
 DATA = dict(
     FidelityWeight=0.0, InitialFill="Harmonic", HoldKnownValues=False, ResultOnCells=True,
@@ -87,11 +87,12 @@ DEFAULTS = {
         "AutomaticThreshold": True, "NoiseLevel": 0.0, "SmoothingLength": 8.0,
         "EdgeThreshold": 0.2, "EdgeWidth": 2.0, "StopTolerance": 1e-5, "EdgeCurves": True},
     "vtkTensorDiffusionFilter": {
-        **DATA, "Tolerance": 1e-3, "Model": "Beltrami", "ColorScale": 10.0, "Metric": "Induced",
+        **DATA, "Model": "Beltrami", "ColorScale": 10.0, "Metric": "Induced",
         "NoiseScale": 1.0, "IntegrationScale": 4.0, "Contrast": 0.05, "Alpha": 1e-3,
         "DiffusionAxes": False},
     "vtkTuringTextureFilter": {
-        **STEPS, "TimeStep": 1 / 16, "NumberOfTimeSteps": 640, "TimeIntegrator": "SecondOrder",
+        **STEPS, "Tolerance": 1e-10, "TimeStep": 1 / 16, "NumberOfTimeSteps": 640,
+        "TimeIntegrator": "SecondOrder",
         "Kinetics": "Turing", "ReactionRate": 1.0, "DiffusionRate1": 21.0, "DiffusionRate2": 2.6,
         "DiffusionRateAcross1": -1.0, "DiffusionRateAcross2": -1.0, "FeatureSize": 0.0, "RefineTo": -1.0,
         "InitialNoise": 0.1, "ClampToNonNegative": True, "AutomaticTimeStep": False,
