@@ -83,8 +83,8 @@ class TestFaces(unittest.TestCase):
     def test_many_columns_are_those_of_single_runs(self):
         many = np.random.default_rng(1).normal(size=(self.surface.n_faces, 40))
         for on_faces in (True, False):
-            # "Automatic" may solve one column by another method.
-            options = {"result_on_faces": on_faces, "time_step": 1, "solver": "Direct"}
+            # With larger tolerances "Automatic" may solve one column by another method.
+            options = {"result_on_faces": on_faces, "time_step": 1, "tolerance": 1e-10}
             np.testing.assert_array_equal(heat(self.surface, many, **options)[:, 35],
                                           heat(self.surface, many[:, 35], **options))
 
