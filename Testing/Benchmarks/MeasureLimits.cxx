@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The response time to an abort and the memory of a run, for every filter on a torus of a million
-// vertices (or of the square of the first argument): the longest time between two checks for an
-// abort, the progress at which it occurred, and the peak memory per vertex in addition to the
+// vertices (or of the square of the first argument; the second one names the only run to measure):
+// the longest time between two checks for an abort, the progress at which it occurred, and the peak memory per vertex in addition to the
 // input. If other work runs on the machine, the CPU time of all threads between two checks is more
 // reliable than the elapsed time.
 
@@ -108,8 +108,15 @@ struct Watch
   }
 };
 
+/// The only run to measure, or none to measure all.
+std::string OnlyRun;
+
 void Measure(const char* name, vtkPolyData* input, vtkPolyDataAlgorithm* filter)
 {
+  if (!OnlyRun.empty() && OnlyRun != name)
+  {
+    return;
+  }
   Watch watch;
   vtkNew<vtkCallbackCommand> command;
   command->SetClientData(&watch);
@@ -144,6 +151,7 @@ void MeasureWith(const char* name, vtkPolyData* input, const std::function<void(
 
 int main(int argc, char** argv)
 {
+  OnlyRun = argc > 2 ? argv[2] : "";
   const auto input = MakeInput(argc > 1 ? std::atoi(argv[1]) : 1000);
   using Heat = vtkFVMHeatFilter;
   using TV = vtkIntrinsicTVFilter;
