@@ -24,7 +24,7 @@ namespace
 {
 
 /// Reverse the polygons of the triangles that a relief has the other way round.
-void TurnPolygons(vtkPolyData* surface, const ReliefRun& run, const std::vector<Index>& cells)
+void TurnPolygons(vtkPolyData* surface, const ReliefRun& run, const TriangleCells& cells)
 {
   const std::vector<char>& turned = run.TurnedTriangles();
   const vtkIdType first = surface->GetNumberOfVerts() + surface->GetNumberOfLines();

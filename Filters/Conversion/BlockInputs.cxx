@@ -23,7 +23,7 @@ std::vector<BlockInput> BlockInputs::Describe(
     const InputFields& arrays = surfaces[b];
     vtkPolyData* const data = arrays.Surface;
     vtkDataArray* const excluded = excludeMasked ? arrays.Mask.Values.Get() : nullptr;
-    std::vector<Index>& cells = this->Cells[b];
+    TriangleCells& cells = this->Cells[b];
     const bool onCells = arrays.Mask.OnCells;
     inputs[b].Name = arrays.Name;
     inputs[b].SurfaceVersion = FingerprintSurface(data, excluded, onCells);

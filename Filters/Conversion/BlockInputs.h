@@ -32,12 +32,12 @@ public:
   const PieceDecomposition* GetDecomposition() const { return this->Decomposition.get(); }
 
   /// The cell of each triangle of a surface of the last inputs that were read.
-  const std::vector<Index>& CellsOf(std::size_t surface) const { return this->Cells[surface]; }
+  const TriangleCells& CellsOf(std::size_t surface) const { return this->Cells[surface]; }
 
 private:
   std::vector<BlockInput> Describe(const std::vector<InputFields>& surfaces, bool excludeMasked);
 
-  std::vector<std::vector<Index>> Cells; ///< per surface: the cell of each triangle
+  std::vector<TriangleCells> Cells; ///< per surface
   std::unique_ptr<PieceDecomposition> Decomposition;
 };
 

@@ -93,10 +93,10 @@ Points ReadDirections(vtkDataArray* array)
   return vectors;
 }
 
-Values ReadRates(vtkDataArray* array, const std::vector<Index>& cells)
+Values ReadRates(vtkDataArray* array, const TriangleCells& cells)
 {
-  Values rates(static_cast<Eigen::Index>(cells.size()), 4);
-  for (std::size_t t = 0; t < cells.size(); ++t)
+  Values rates(static_cast<Eigen::Index>(cells.Size()), 4);
+  for (std::size_t t = 0; t < cells.Size(); ++t)
   {
     for (int k = 0; k < 4; ++k)
     {
@@ -205,7 +205,7 @@ Fingerprint FingerprintFields(const InputFields& arrays)
   return fingerprint;
 }
 
-Fields ReadFields(const InputFields& arrays, const std::vector<Index>& cells)
+Fields ReadFields(const InputFields& arrays, const TriangleCells& cells)
 {
   const vtkIdType numberOfCells = arrays.Surface->GetNumberOfCells();
   Fields fields;
@@ -232,7 +232,11 @@ Fields ReadFields(const InputFields& arrays, const std::vector<Index>& cells)
   if (fields.HasCells())
   {
     fields.NumberOfCells = static_cast<Index>(numberOfCells);
-    fields.Cells.assign(cells.begin(), cells.end());
+    fields.Cells.resize(cells.Size());
+    for (std::size_t t = 0; t < cells.Size(); ++t)
+    {
+      fields.Cells[t] = cells[t];
+    }
   }
   if (arrays.Direction.Values)
   {
@@ -240,8 +244,8 @@ Fields ReadFields(const InputFields& arrays, const std::vector<Index>& cells)
     if (fields.Directions.OnCells)
     {
       const Points ofCells = fields.Directions.Values;
-      fields.Directions.Values.resize(static_cast<Eigen::Index>(cells.size()), 3);
-      for (std::size_t t = 0; t < cells.size(); ++t)
+      fields.Directions.Values.resize(static_cast<Eigen::Index>(cells.Size()), 3);
+      for (std::size_t t = 0; t < cells.Size(); ++t)
       {
         fields.Directions.Values.row(static_cast<Eigen::Index>(t)) = ofCells.row(cells[t]);
       }

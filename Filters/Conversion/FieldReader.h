@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Conversion/TriangleCells.h"
 #include "Run/Fields.h"
 #include "Run/Fingerprint.h"
 
@@ -74,6 +75,6 @@ Fingerprint FingerprintFields(const InputFields& arrays);
 
 /// cells: the cell of each triangle. Throws std::runtime_error, with the property's name, on infinite
 /// directions and on rates that are negative or not finite.
-Fields ReadFields(const InputFields& arrays, const std::vector<Index>& cells);
+Fields ReadFields(const InputFields& arrays, const TriangleCells& cells);
 
 } // namespace SurfaceDiffusion

@@ -127,7 +127,7 @@ PieceRefinement::EdgeSum PieceRefinement::SumEdges(const std::vector<SurfacePiec
     Piece& piece = this->Find(p, pieces[p].Input);
     if (piece.SumOfEdges < 0.0)
     {
-      std::vector<Index> cells;
+      TriangleCells cells;
       const SurfaceArrays arrays = ReadSurface(pieces[p].Input, nullptr, false, cells);
       std::vector<std::pair<Index, Index>> edges;
       edges.reserve(static_cast<std::size_t>(arrays.Triangles.size()));
@@ -157,7 +157,7 @@ PieceRefinement::EdgeSum PieceRefinement::SumEdges(const std::vector<SurfacePiec
 void PieceRefinement::Bisect(Piece& piece, vtkPolyData* input, double length,
   Index maximumTriangles, const ProgressMonitor& progress)
 {
-  std::vector<Index> cells;
+  TriangleCells cells;
   const SurfaceArrays arrays = ReadSurface(input, nullptr, false, cells);
   RequireFiniteCoordinates(arrays.Points);
   const RefinedSurface refined =

@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -61,7 +60,7 @@ Points ReadPoints(vtkPolyData* input)
 /// Reads the triangles of a surface without other cells and ghosts, and their cells, on all
 /// threads. Returns false if it is not one, or if a corner is not a point, which Triangulator
 /// reports.
-bool ReadTriangles(vtkPolyData* input, Triangles& triangles, std::vector<Index>& cells)
+bool ReadTriangles(vtkPolyData* input, Triangles& triangles, TriangleCells& cells)
 {
   vtkCellArray* const polygons = input->GetPolys();
   if (!polygons || polygons->IsHomogeneous() != 3 || input->GetNumberOfStrips() > 0 ||
@@ -94,9 +93,8 @@ bool ReadTriangles(vtkPolyData* input, Triangles& triangles, std::vector<Index>&
   {
     return false;
   }
-  cells.resize(static_cast<std::size_t>(count));
-  const auto first = static_cast<Index>(input->GetNumberOfVerts() + input->GetNumberOfLines());
-  std::iota(cells.begin(), cells.end(), first);
+  cells =
+    TriangleCells(static_cast<Index>(input->GetNumberOfVerts() + input->GetNumberOfLines()), count);
   return true;
 }
 
@@ -274,7 +272,7 @@ Fingerprint FingerprintSurface(vtkPolyData* input, vtkDataArray* excluded, bool 
 }
 
 SurfaceArrays ReadSurface(
-  vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, std::vector<Index>& cells)
+  vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, TriangleCells& cells)
 {
   if (input->GetNumberOfPoints() > LargestCount)
   {
@@ -301,14 +299,14 @@ SurfaceArrays ReadSurface(
         arrays.Triangles(static_cast<Eigen::Index>(t), a) = triangulator.Triangles[t][a];
       }
     }
-    cells = std::move(triangulator.Cells);
+    cells = TriangleCells(std::move(triangulator.Cells));
   }
   arrays.Excluded = FindHiddenPoints(input); // whose triangles are left out above
   if (excluded && excludedCells)
   {
-    for (const Index cell : cells)
+    for (std::size_t t = 0; t < cells.Size(); ++t)
     {
-      arrays.ExcludedTriangles.push_back(excluded->GetComponent(cell, 0) != 0.0);
+      arrays.ExcludedTriangles.push_back(excluded->GetComponent(cells[t], 0) != 0.0);
     }
   }
   else if (excluded)

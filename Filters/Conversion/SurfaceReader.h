@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Conversion/TriangleCells.h"
 #include "Run/Fingerprint.h"
 #include "Run/Surface.h"
 
 #include "vtkType.h"
-
-#include <vector>
 
 class vtkDataArray;
 class vtkPolyData;
@@ -30,6 +29,6 @@ Fingerprint FingerprintSurface(
 /// Throws std::runtime_error if there are more points, cells or triangles than 32-bit numbers
 /// count, and if a cell refers to a point that does not exist.
 SurfaceArrays ReadSurface(
-  vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, std::vector<Index>& cells);
+  vtkPolyData* input, vtkDataArray* excluded, bool excludedCells, TriangleCells& cells);
 
 } // namespace SurfaceDiffusion

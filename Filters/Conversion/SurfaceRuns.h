@@ -42,10 +42,7 @@ public:
 
   const SurfaceRun& RunOf(std::size_t surface) const { return *this->Runs[surface]; }
   /// The cell of each triangle of a surface.
-  const std::vector<Index>& CellsOf(std::size_t surface) const
-  {
-    return this->Inputs.CellsOf(surface);
-  }
+  const TriangleCells& CellsOf(std::size_t surface) const { return this->Inputs.CellsOf(surface); }
 
   /// The numbers of all surfaces.
   std::map<std::string, Values> FindNumbers() const;
