@@ -286,7 +286,7 @@ TEST(InterpolationField, NinetyPercentOfTruthsAreInsideTheBandOfTheirError)
   settings.ComputeError = true;
 
   SparseMatrix root(n, n);
-  TakePattern(assembler->Pattern(), root, SerialFor());
+  assembler->TakePattern(root, SerialFor());
   assembler->Fill(root, settings.Kappa * settings.Kappa * mesh.ControlAreas(), 1.0,
     CotanWeights(mesh), nullptr, SerialFor());
   const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> factor(root);

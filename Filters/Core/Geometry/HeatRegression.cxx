@@ -88,7 +88,7 @@ double SmoothByHeat(const Assembler& assembler, double fwhm, Values& u, LinearSo
   const TriangleMesh& mesh = assembler.Mesh();
   const double dt = StepOfWidth(fwhm);
   SparseMatrix matrix;
-  TakePattern(assembler.Pattern(), matrix, parallel);
+  assembler.TakePattern(matrix, parallel);
   assembler.Fill(matrix, mesh.ControlAreas(), dt, CotanWeights(mesh, parallel), nullptr, parallel);
   solver.SetMatrix(matrix, progress.Part(0.0, 0.5));
   double missed = 0.0;

@@ -12,7 +12,7 @@ void ImplicitSystem::Assemble(const Eigen::Ref<const Vector>& diagonal, double s
 {
   if (!this->HasPattern)
   {
-    TakePattern(this->Assembly->Pattern(), this->Matrix, this->Parallel);
+    this->Assembly->TakePattern(this->Matrix, this->Parallel);
     this->HasPattern = true; // last: a pattern that was aborted is taken again
   }
   this->Assembly->Fill(this->Matrix, diagonal, scale, coefficients, weights, this->Parallel, signs);

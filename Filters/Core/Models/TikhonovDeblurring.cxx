@@ -87,8 +87,8 @@ void TikhonovDeblurring::Prepare(const ProgressMonitor& progress)
   }
   const double area = mesh.ControlAreas().sum();
   const double mean = factors > 0.0 ? factors / area : 1.0;
-  TakePattern(this->Assembly->Pattern(), this->Stiffness, this->Parallel);
-  TakePattern(this->Assembly->Pattern(), this->Preconditioner, this->Parallel);
+  this->Assembly->TakePattern(this->Stiffness, this->Parallel);
+  this->Assembly->TakePattern(this->Preconditioner, this->Parallel);
   this->Assembly->Fill(
     this->Stiffness, Vector::Zero(n), 1.0, this->Coefficients, nullptr, this->Parallel);
   this->Assembly->Fill(this->Preconditioner, (this->FidelityWeight * mean) * mesh.ControlAreas(),

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -20,20 +22,15 @@ Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor
   const Index n = m.NumberOfVertices();
   const auto& begin = m.VertexCornersBegin();
   const auto& corners = m.VertexCorners();
-
-  // Rows are listed once. Their positions in the matrix are known when all rows are listed.
-  std::vector<Index>& outer = this->Entries.Outer;
-  outer.assign(static_cast<std::size_t>(n) + 1, 0);
-  std::vector<std::vector<Index>> rows(NumberOfBlocks(n)); // one after another, per block
+  this->RowsBegin.assign(static_cast<std::size_t>(n) + 1, 0);
   this->SlotMap = Buffer<Slots>(corners.size());
-  this->DiagonalSlot.resize(n);
+  this->DiagonalSlots = Buffer<std::uint8_t>(static_cast<std::size_t>(n));
   ForEachBlock(parallel, n,
-    [&](Index block, Index first, Index last)
+    [&](Index, Index first, Index last)
     {
       IndexSet row;
       std::vector<Index> slot; // of the numbers that the set gives
       std::vector<std::array<Index, 2>> numbers; // of the next and last vertex of each corner
-      rows[block].reserve(8 * static_cast<std::size_t>(last - first));
       for (Index i = first; i < last; ++i)
       {
         row.Clear();
@@ -47,42 +44,81 @@ Assembler::Assembler(std::shared_ptr<const TriangleMesh> mesh, const ParallelFor
         {
           numbers[c - begin[i]][1] = row.Insert(m.OtherCorner(corners[c], 2));
         }
-        const Index size = row.Size();
         row.Rank(slot);
-        const std::size_t start = rows[block].size();
-        rows[block].resize(start + size);
-        for (Index k = 0; k < size; ++k)
-        {
-          rows[block][start + slot[k]] = row[k];
-        }
-        this->DiagonalSlot[i] = slot[0];
+        this->RowsBegin[i + 1] = row.Size();
+        // In long rows these are cut off, and not read.
+        this->DiagonalSlots[i] = static_cast<std::uint8_t>(slot[0]);
         for (Index c = begin[i]; c < begin[i + 1]; ++c)
         {
           const auto [next, other] = numbers[c - begin[i]];
           this->SlotMap[c] = { static_cast<std::uint8_t>(slot[next]),
-            static_cast<std::uint8_t>(slot[other]) }; // not read in long rows
+            static_cast<std::uint8_t>(slot[other]) };
         }
-        outer[i + 1] = size;
       }
     });
-  progress.Report(0.7);
-  for (Index i = 0; i < n; ++i)
-  {
-    outer[i + 1] += outer[i];
-  }
-
-  this->Entries.Inner = Buffer<Index>(static_cast<std::size_t>(outer[n]));
-  ForEachBlock(parallel, n,
-    [&](Index block, Index first, Index last)
-    {
-      std::copy(rows[block].begin(), rows[block].end(), this->Entries.Inner.data() + outer[first]);
-      std::vector<Index>().swap(rows[block]);
-      for (Index i = first; i < last; ++i)
-      {
-        this->DiagonalSlot[i] += outer[i];
-      }
-    });
+  progress.Report(0.9);
+  std::partial_sum(this->RowsBegin.begin(), this->RowsBegin.end(), this->RowsBegin.begin());
   progress.Report(1.0);
+}
+
+/// The columns of all entries, sorted within each row.
+void Assembler::ListColumns(Index* inner, const ParallelFor& parallel) const
+{
+  const TriangleMesh& m = *this->SurfaceMesh;
+  const auto& begin = m.VertexCornersBegin();
+  const auto& corners = m.VertexCorners();
+  ForEach(parallel, m.NumberOfVertices(),
+    [&](Index i)
+    {
+      Index* const row = inner + this->RowsBegin[i];
+      if (this->IsMapped(i))
+      {
+        row[this->DiagonalSlots[i]] = i;
+        for (Index c = begin[i]; c < begin[i + 1]; ++c)
+        {
+          row[this->SlotMap[c].Next] = m.OtherCorner(corners[c], 1);
+          row[this->SlotMap[c].Last] = m.OtherCorner(corners[c], 2);
+        }
+        return;
+      }
+      std::vector<Index> columns = { i };
+      for (Index c = begin[i]; c < begin[i + 1]; ++c)
+      {
+        columns.push_back(m.OtherCorner(corners[c], 1));
+        columns.push_back(m.OtherCorner(corners[c], 2));
+      }
+      std::sort(columns.begin(), columns.end());
+      std::unique_copy(columns.begin(), columns.end(), row);
+    });
+}
+
+SparsePattern Assembler::Pattern(const ParallelFor& parallel) const
+{
+  SparsePattern pattern;
+  pattern.Outer = this->RowsBegin;
+  pattern.Inner = Buffer<Index>(static_cast<std::size_t>(pattern.NumberOfEntries()));
+  this->ListColumns(pattern.Inner.data(), parallel);
+  return pattern;
+}
+
+void Assembler::TakePattern(SparseMatrix& matrix, const ParallelFor& parallel) const
+{
+  const Index n = this->SurfaceMesh->NumberOfVertices();
+  matrix.resize(n, n);
+  matrix.resizeNonZeros(this->RowsBegin[n]);
+  ForEach(parallel, n + 1, [&](Index i) { matrix.outerIndexPtr()[i] = this->RowsBegin[i]; });
+  this->ListColumns(matrix.innerIndexPtr(), parallel);
+}
+
+/// The place of the diagonal entry of a row, counted from its start.
+Index Assembler::DiagonalSlot(Index row, const Index* inner) const
+{
+  const Index begin = this->RowsBegin[row];
+  return this->IsMapped(row)
+    ? Index{ this->DiagonalSlots[row] }
+    : static_cast<Index>(
+        std::lower_bound(inner + begin, inner + this->RowsBegin[row + 1], row) - inner) -
+      begin;
 }
 
 void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diagonal, double scale,
@@ -98,7 +134,7 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
     [&](Index i)
     {
       std::fill(values + outer[i], values + outer[i + 1], 0.0);
-      const Index diagonalSlot = this->DiagonalSlot[i];
+      const Index diagonalSlot = outer[i] + this->DiagonalSlot(i, inner);
       double onDiagonal = 0.0;
       const auto add = [&](Index slot, double coefficient, double sign)
       {
@@ -112,7 +148,7 @@ void Assembler::Fill(SparseMatrix& matrix, const Eigen::Ref<const Vector>& diago
         values[slot] -= sign * coefficient;
         onDiagonal += coefficient;
       };
-      const bool isMapped = outer[i + 1] - outer[i] <= LongestMappedRow;
+      const bool isMapped = this->IsMapped(i);
       const auto slotOf = [&](Index corner, int further, std::uint8_t slot)
       {
         return isMapped
@@ -140,7 +176,11 @@ void Assembler::SetDiagonal(
   SparseMatrix& matrix, const Vector& diagonal, const ParallelFor& parallel) const
 {
   ForEach(parallel, static_cast<Index>(diagonal.size()),
-    [&](Index i) { matrix.valuePtr()[this->DiagonalSlot[i]] = diagonal[i]; });
+    [&](Index i)
+    {
+      const Index slot = this->DiagonalSlot(i, matrix.innerIndexPtr());
+      matrix.valuePtr()[this->RowsBegin[i] + slot] = diagonal[i];
+    });
 }
 
 void Assembler::Constrain(SparseMatrix& matrix, const Flags& fixed, const Values& values,
@@ -155,7 +195,7 @@ void Assembler::Constrain(SparseMatrix& matrix, const Flags& fixed, const Values
       load.row(i).setZero();
       if (fixed[i])
       {
-        load.row(i) = a[this->DiagonalSlot[i]] * values.row(i);
+        load.row(i) = a[outer[i] + this->DiagonalSlot(i, inner)] * values.row(i);
       }
       for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
       {

@@ -18,9 +18,9 @@ namespace SurfaceDiffusion
 /// discrete Laplace-Beltrami operator. This is the finite-volume discretisation (5) of the paper,
 /// (8), (11) and (14), and the same as that by linear finite elements.
 ///
-/// The pattern and the map from triangles to the entries of the matrix are made once. Assembling is
-/// then one pass over the triangles, gathered row by row: no two threads write one entry, the order
-/// of every sum is fixed, and the matrix is symmetric to the last bit.
+/// The lengths of the rows and the map from triangles to the entries of the matrix are made once.
+/// Assembling is then one pass over the triangles, gathered row by row: no two threads write one
+/// entry, the order of every sum is fixed, and the matrix is symmetric to the last bit.
 class Assembler
 {
 public:
@@ -30,8 +30,11 @@ public:
   const TriangleMesh& Mesh() const { return *this->SurfaceMesh; }
   std::shared_ptr<const TriangleMesh> SharedMesh() const { return this->SurfaceMesh; }
 
-  /// In each row a vertex and its neighbours.
-  const SparsePattern& Pattern() const { return this->Entries; }
+  /// In each row a vertex and its neighbours. It is made anew in each call: kept beside the matrix
+  /// it would be its columns once more, 28 bytes per vertex.
+  SparsePattern Pattern(const ParallelFor& parallel = SerialFor()) const;
+  /// Give `matrix` the pattern and leave its values to be filled in.
+  void TakePattern(SparseMatrix& matrix, const ParallelFor& parallel) const;
 
   /// matrix = diag(d) + scale K with the stiffness matrix K,
   ///   (K u)_i = sum over the triangles at vertex i and their corners j of c_ij (u_i - u_j),
@@ -55,8 +58,15 @@ public:
     const ParallelFor& parallel = SerialFor()) const;
 
 private:
+  void ListColumns(Index* inner, const ParallelFor& parallel) const;
+  bool IsMapped(Index row) const
+  {
+    return this->RowsBegin[row + 1] - this->RowsBegin[row] <= LongestMappedRow;
+  }
+  Index DiagonalSlot(Index row, const Index* inner) const;
+
   std::shared_ptr<const TriangleMesh> SurfaceMesh;
-  SparsePattern Entries;
+  std::vector<Index> RowsBegin; ///< the first entry of each row, and their end
   /// The entries of the triangle's next and last vertex in a corner's row, counted from the start
   /// of the row. Those of rows that are too long for that are searched.
   struct Slots
@@ -65,7 +75,7 @@ private:
   };
   static constexpr Index LongestMappedRow = 256;
   Buffer<Slots> SlotMap; ///< in the order of TriangleMesh::VertexCorners()
-  std::vector<Index> DiagonalSlot; ///< per row
+  Buffer<std::uint8_t> DiagonalSlots; ///< per row, likewise
 };
 
 /// y = matrix x for all columns of x at once. y must not be x.

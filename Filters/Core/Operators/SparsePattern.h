@@ -39,12 +39,6 @@ inline void TakePattern(Index rows, const Index* outer, const Index* inner, Spar
 }
 
 inline void TakePattern(
-  const SparsePattern& pattern, SparseMatrix& matrix, const ParallelFor& parallel)
-{
-  TakePattern(pattern.NumberOfRows(), pattern.Outer.data(), pattern.Inner.data(), matrix, parallel);
-}
-
-inline void TakePattern(
   const SparseMatrix& pattern, SparseMatrix& matrix, const ParallelFor& parallel)
 {
   TakePattern(static_cast<Index>(pattern.rows()), pattern.outerIndexPtr(), pattern.innerIndexPtr(),
@@ -55,7 +49,8 @@ inline void TakePattern(
 inline SparseMatrix ZeroMatrix(const SparsePattern& pattern)
 {
   SparseMatrix matrix;
-  TakePattern(pattern, matrix, SerialFor());
+  TakePattern(
+    pattern.NumberOfRows(), pattern.Outer.data(), pattern.Inner.data(), matrix, SerialFor());
   std::fill_n(matrix.valuePtr(), matrix.nonZeros(), 0.0);
   return matrix;
 }

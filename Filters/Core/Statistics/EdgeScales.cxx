@@ -80,17 +80,17 @@ Fit FitDisk(const Points& offsets, const Values& deviations, double variance)
 class Component
 {
 public:
-  Component(const Assembler& assembler, const Eigen::Ref<const Points>& points,
-    const PointData& data, VertexRange range)
-    : Data(assembler, points, data, range)
+  Component(const Assembler& assembler, const SparsePattern& pattern,
+    const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range)
+    : Data(assembler, pattern, points, data, range)
+    , Pattern(pattern)
   {
   }
 
   double MeanEdgeLength() const
   {
     const double ofMeasured = this->MeanLength(this->Data.Neighbours);
-    const double length =
-      ofMeasured > 0.0 ? ofMeasured : this->MeanLength(this->Data.Operators.Pattern());
+    const double length = ofMeasured > 0.0 ? ofMeasured : this->MeanLength(this->Pattern);
     return length > 0.0 ? length : 1.0;
   }
 
@@ -218,6 +218,7 @@ private:
   }
 
   const FitData Data;
+  const SparsePattern& Pattern; ///< of the stiffness matrix
 };
 
 /// The J that a slope needs.
@@ -226,17 +227,18 @@ double ThresholdOfSlope(double slope, double edgeWidth, double length)
   return slope * std::max(std::sqrt(24.0 * edgeWidth * length), 2.0 * length);
 }
 
-EdgeScales FindScales(const Assembler& assembler, const Eigen::Ref<const Points>& points,
-  const PointData& data, const EdgeScalesInput& input, VertexRange range)
+EdgeScales FindScales(const Assembler& assembler, const SparsePattern& pattern,
+  const Eigen::Ref<const Points>& points, const PointData& data, const EdgeScalesInput& input,
+  VertexRange range)
 {
-  const Component component(assembler, points, data, range);
+  const Component component(assembler, pattern, points, data, range);
   const double h = component.MeanEdgeLength();
   EdgeScales scales;
   scales.Noise = input.NoiseLevel;
   double correlationLength = h;
   if (!(scales.Noise > 0.0))
   {
-    const NoiseEstimate estimate = EstimateNoise(assembler, points, data, range);
+    const NoiseEstimate estimate = EstimateNoise(assembler, pattern, points, data, range);
     scales.Noise =
       input.NoiseGain > 0.0 ? input.NoiseGain * estimate.BetweenNeighbours : estimate.Level();
     if (estimate.BetweenNeighbours > 0.0)
@@ -282,11 +284,13 @@ std::vector<EdgeScales> FindEdgeScales(const Assembler& assembler,
   const Eigen::Ref<const Points>& points, const PointData& data, const EdgeScalesInput& input)
 {
   const std::vector<Index>& begin = assembler.Mesh().ComponentsBegin();
+  const SparsePattern pattern = assembler.Pattern();
   std::vector<EdgeScales> scales;
   double largest = 0.0;
   for (std::size_t c = 0; c + 1 < begin.size(); ++c)
   {
-    scales.push_back(FindScales(assembler, points, data, input, { begin[c], begin[c + 1] }));
+    scales.push_back(
+      FindScales(assembler, pattern, points, data, input, { begin[c], begin[c + 1] }));
     largest = std::max(largest, scales.back().Threshold);
   }
   for (EdgeScales& ofComponent : scales)

@@ -17,14 +17,15 @@ namespace SurfaceDiffusion
 /// TriangleMesh::InputVertex.
 struct FitData
 {
-  /// Values between those that were measured are missing.
-  FitData(const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data,
-    VertexRange range)
+  /// Values between those that were measured are missing. pattern: that of the assembler; it must
+  /// outlive this.
+  FitData(const Assembler& assembler, const SparsePattern& pattern,
+    const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range)
     : Operators(assembler)
     , InputPoints(points)
     , Given(data.Given)
     , Range(range)
-    , Neighbours(data.Measured ? data.Measured->Neighbours : assembler.Pattern())
+    , Neighbours(data.Measured ? data.Measured->Neighbours : pattern)
     , Missing(data.Missing.segment(range.Begin, range.Size()))
   {
     if (data.Measured)

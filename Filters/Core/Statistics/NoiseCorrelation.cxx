@@ -221,7 +221,8 @@ NeighbourVariation MeasureVariation(const Assembler& assembler,
 {
   NeighbourVariation variation;
   variation.OfLinearFits = ofLinearFits;
-  FitData data(assembler, points, given, { 0, assembler.Mesh().NumberOfVertices() });
+  const SparsePattern pattern = assembler.Pattern();
+  FitData data(assembler, pattern, points, given, { 0, assembler.Mesh().NumberOfVertices() });
   data.Missing = !FindVaryingVertices(assembler, given);
   if (data.Given.rows() > 0)
   {

@@ -105,19 +105,20 @@ VertexRange AllVertices(const Assembler& assembler)
 Flags FindVaryingVertices(const Assembler& assembler, const PointData& data)
 {
   const Points none;
-  return FindVarying({ assembler, none, data, AllVertices(assembler) });
+  const SparsePattern pattern = assembler.Pattern();
+  return FindVarying({ assembler, pattern, none, data, AllVertices(assembler) });
 }
 
 NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data)
 {
-  return EstimateNoise(assembler, points, data, AllVertices(assembler));
+  return EstimateNoise(assembler, assembler.Pattern(), points, data, AllVertices(assembler));
 }
 
-NoiseEstimate EstimateNoise(const Assembler& assembler, const Eigen::Ref<const Points>& points,
-  const PointData& given, VertexRange range)
+NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pattern,
+  const Eigen::Ref<const Points>& points, const PointData& given, VertexRange range)
 {
-  FitData data(assembler, points, given, range);
+  FitData data(assembler, pattern, points, given, range);
   data.Missing = !FindVarying(data);
   NoiseEstimate estimate;
   estimate.BetweenNeighbours = EstimateAt(1, data);

@@ -45,9 +45,9 @@ Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
 NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
 
-/// The same from the vertices of some connected components.
-NoiseEstimate EstimateNoise(const Assembler& assembler, const Eigen::Ref<const Points>& points,
-  const PointData& data, VertexRange range);
+/// The same from the vertices of some connected components. pattern: that of the assembler.
+NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pattern,
+  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range);
 
 /// A fidelity weight, and the root mean square of u - f that it leaves.
 struct FidelityChoice

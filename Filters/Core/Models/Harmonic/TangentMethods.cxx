@@ -178,7 +178,7 @@ std::unique_ptr<LinearSolver> TangentMethods::MakeCycle() const
   constexpr double scale = 1000.0; // of the stiffness matrix to the mean control area
   const TriangleMesh& mesh = this->Assembly->Mesh();
   SparseMatrix matrix;
-  TakePattern(this->Assembly->Pattern(), matrix, this->Parallel);
+  this->Assembly->TakePattern(matrix, this->Parallel);
   this->Assembly->Fill(matrix, mesh.ControlAreas(), scale * mesh.ControlAreas().mean(),
     this->Coefficients, nullptr, this->Parallel);
   return MakeMultigridSolver(matrix, this->Parallel);

@@ -38,7 +38,7 @@ SmoothnessEnergy::SmoothnessEnergy(const Assembler& assembler, const CornerWeigh
   const double square = kappa * kappa;
   const CornerWeights resolved = Resolved(
     this->Mesh, rim == RimCondition::Natural ? coefficients : CotanWeights(this->Mesh, parallel));
-  TakePattern(assembler.Pattern(), this->K, parallel);
+  assembler.TakePattern(this->K, parallel);
   SparseMatrix first = this->K;
   assembler.Fill(this->K, none, 1.0, resolved, nullptr, parallel);
   if (rim == RimCondition::Natural)

@@ -150,7 +150,7 @@ std::optional<CoarseSpace> MakeCoarseSpace(const Assembler& fine,
   CoarseSpace space;
   for (std::size_t c = 0; c < 2; ++c)
   {
-    TakePattern(fine.Pattern(), space.Stiffness[c], parallel);
+    fine.TakePattern(space.Stiffness[c], parallel);
     fine.Fill(space.Stiffness[c], Vector::Zero(mesh.NumberOfVertices()), 1.0, coefficients[c],
       nullptr, parallel);
   }

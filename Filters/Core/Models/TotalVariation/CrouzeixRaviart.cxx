@@ -60,7 +60,7 @@ Values Smoothed(const Assembler& operators, const Values& u, const ParallelFor& 
   constexpr double weight = 0.25;
   const Vector diagonal = Vector::Constant(u.rows(), weight);
   SparseMatrix matrix;
-  TakePattern(operators.Pattern(), matrix, parallel);
+  operators.TakePattern(matrix, parallel);
   operators.Fill(
     matrix, diagonal, 1.0, CotanWeights(operators.Mesh(), parallel), nullptr, parallel);
   const auto solver = MakeConjugateGradientSolver(parallel);

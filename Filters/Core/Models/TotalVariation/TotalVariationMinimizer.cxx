@@ -178,7 +178,7 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   this->GrowthRate = stiffness > 0.0
     ? GrowthFactor * SquaredEdgeOverHeight * this->Vertices->QuadraticWeight() / stiffness
     : 0.0;
-  TakePattern(this->Assembly->Pattern(), this->Matrix, parallel);
+  this->Assembly->TakePattern(this->Matrix, parallel);
 }
 
 TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& g, const Values& f,
