@@ -161,7 +161,7 @@ TEST(CotanWeights, DiffusionAcrossAHeightOfANeedleKeepsItsDigits)
   {
     const Surface needle = OneTriangle({ 0, 0 }, { 1, 0 }, { 0.4, height });
     const auto mesh = MakeMesh(needle);
-    const TriangleMesh::Shape& s = mesh->Shapes()[0];
+    const TriangleMesh::Shape s = mesh->Shapes()[0];
     TangentVectors e1(1, 2);
     e1 << 0.0, 1.0; // along the height: only the differences along corners 0 and 1 diffuse
     const CornerWeights c2 = AnisotropicWeights(*mesh, CotanWeights(*mesh), e1, 0.0, 1.0);

@@ -242,7 +242,7 @@ TEST(HarmonicMap, ExplicitReactionSolvesThePrintedEquations)
       right *= 1.0 + settings.TimeStep * settings.Fidelity;
       for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
       {
-        const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+        const TriangleMesh::Shape shape = mesh.Shapes()[t];
         const auto v = mesh.TriangleVertices().row(t);
         double square = 0.0;
         for (int k = 0; k < 3; ++k)

@@ -126,9 +126,9 @@ TEST(IntrinsicDelaunay, KeepsTheArea)
     const auto mesh = MakeMesh(surface);
     const auto flipped = IntrinsicDelaunay(mesh).Mesh();
     double area = 0.0;
-    for (const TriangleMesh::Shape& shape : flipped->Shapes())
+    for (Index t = 0; t < flipped->NumberOfTriangles(); ++t)
     {
-      area += shape.Area();
+      area += flipped->Shapes()[t].Area();
     }
     EXPECT_NEAR(area / mesh->ControlAreas().sum(), 1.0, 1e-12) << name;
     // The integral over the drawn surface: a third of its triangles at each vertex.

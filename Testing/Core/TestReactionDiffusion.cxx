@@ -346,7 +346,7 @@ double ShareAcross(bool axial, const std::array<double, 2>& anisotropy)
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const auto u = [&](int a) { return model.State()(mesh.TriangleVertices()(t, a), 0); };
-    const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+    const TriangleMesh::Shape shape = mesh.Shapes()[t];
     const Eigen::Vector2d gradient = Gradient(shape, u(0), u(1), u(2));
     const double along = frames.row(t).dot(gradient);
     across += shape.Area() * (gradient.squaredNorm() - along * along);
@@ -411,7 +411,7 @@ TEST(ReactionDiffusion, RatesPerTriangleGiveSpotsOfTwoSizes)
   {
     const int half = factor[t] > 1.0;
     const auto u = [&](int a) { return model.State()(mesh.TriangleVertices()(t, a), 0); };
-    const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+    const TriangleMesh::Shape shape = mesh.Shapes()[t];
     const double mean = (u(0) + u(1) + u(2)) / 3.0;
     gradients[half] += shape.Area() * Gradient(shape, u(0), u(1), u(2)).squaredNorm();
     squares[half] += shape.Area() * mean * mean;

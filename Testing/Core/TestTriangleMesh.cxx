@@ -53,7 +53,7 @@ TEST_P(AnySurface, ShapesKeepTheLengthsOfTheEdges)
   {
     const auto corner = [&](int a)
     { return s.Vertices.row(mesh->InputVertex()[mesh->TriangleVertices()(t, a)]); };
-    const TriangleMesh::Shape& shape = mesh->Shapes()[t];
+    const TriangleMesh::Shape shape = mesh->Shapes()[t];
     const double unit = mesh->LengthUnit();
     EXPECT_NEAR(shape.Length * unit, (corner(1) - corner(0)).norm(), 1e-14);
     EXPECT_NEAR(std::hypot(shape.X, shape.Y) * unit, (corner(2) - corner(0)).norm(), 1e-14);
@@ -226,7 +226,7 @@ TEST(TriangleMesh, TakesTheLargestAndSmallestCoordinates)
     const auto mesh = MakeMesh(
       MakeSurface({ { -size, -size, 0 }, { size, -size, 0 }, { 0, size, 0 } }, { { 0, 1, 2 } }));
     ASSERT_EQ(mesh->NumberOfTriangles(), 1) << size;
-    const TriangleMesh::Shape& shape = mesh->Shapes()[0];
+    const TriangleMesh::Shape shape = mesh->Shapes()[0];
     EXPECT_NEAR(shape.Length * mesh->LengthUnit() / size, 2.0, 1e-2) << size;
     EXPECT_NEAR(shape.Y * mesh->LengthUnit() / size, 2.0, 1e-2) << size;
   }

@@ -39,24 +39,25 @@ TriangleMesh::Shape Stretched(
 FrontShapes MakeFrontShapes(const TriangleMesh& mesh, const std::vector<double>& slowness,
   const Eigen::Ref<const TangentVectors>& directions, double along, double across)
 {
-  FrontShapes shapes = mesh.Shapes();
+  FrontShapes shapes;
+  shapes.reserve(static_cast<std::size_t>(mesh.NumberOfTriangles()));
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const auto row = static_cast<std::size_t>(t);
-    const double ofTriangle = slowness.empty() ? 1.0 : slowness[row];
+    TriangleMesh::Shape shape = mesh.Shapes()[t];
+    const double ofTriangle = slowness.empty() ? 1.0 : slowness[static_cast<std::size_t>(t)];
     if (std::isinf(ofTriangle))
     {
-      shapes[row].Length = std::numeric_limits<double>::infinity();
+      shape.Length = std::numeric_limits<double>::infinity();
     }
     else if (directions.rows() > 0 && HasDirection(directions, t))
     {
-      shapes[row] =
-        Stretched(shapes[row], directions.row(t), ofTriangle / along, ofTriangle / across);
+      shape = Stretched(shape, directions.row(t), ofTriangle / along, ofTriangle / across);
     }
     else
     {
-      shapes[row] = Scaled(shapes[row], ofTriangle / IsotropicMean(along, across));
+      shape = Scaled(shape, ofTriangle / IsotropicMean(along, across));
     }
+    shapes.push_back(shape);
   }
   return shapes;
 }

@@ -88,7 +88,7 @@ void GeodesicDistance::FindCorners()
   }
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const TriangleMesh::Shape& shape = this->ShapeOf(t);
+    const TriangleMesh::Shape shape = this->ShapeOf(t);
     const bool isOpen = !IsBarrier(this->Shapes, t);
     const double first = std::atan2(shape.Y, shape.X);
     const double second = std::atan2(shape.Y, shape.Length - shape.X);
@@ -119,7 +119,7 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
     return { Never, -1, -1 };
   }
   const int a = corner % 3;
-  const TriangleMesh::Shape& shape = this->ShapeOf(t);
+  const TriangleMesh::Shape shape = this->ShapeOf(t);
   const Index second = this->Mesh->OtherCorner(corner, 1);
   const Index third = this->Mesh->OtherCorner(corner, 2);
   const double toSecond = shape.EdgeLength((a + 2) % 3);
@@ -237,7 +237,7 @@ std::vector<double> GeodesicDistance::LongestEdges() const
     {
       continue;
     }
-    const TriangleMesh::Shape& shape = this->ShapeOf(t);
+    const TriangleMesh::Shape shape = this->ShapeOf(t);
     const double edge = std::max({ shape.EdgeLength(0), shape.EdgeLength(1), shape.EdgeLength(2) });
     for (int a = 0; a < 3; ++a)
     {

@@ -83,10 +83,10 @@ private:
 
   Way WayThrough(
     Index corner, const std::vector<FrontSource>& fronts, const Arrival& arrival) const;
-  const TriangleMesh::Shape& ShapeOf(Index t) const
+  TriangleMesh::Shape ShapeOf(Index t) const
   {
-    return (
-      this->Shapes.empty() ? this->Mesh->Shapes() : this->Shapes)[static_cast<std::size_t>(t)];
+    return this->Shapes.empty() ? this->Mesh->Shapes()[t]
+                                : this->Shapes[static_cast<std::size_t>(t)];
   }
   void FindCorners();
   /// Find() for times that `arrival` has infinite at first. latest: per vertex, the time from which on

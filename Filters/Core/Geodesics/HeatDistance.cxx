@@ -156,7 +156,7 @@ Values HeatDistance::Directions(const std::vector<HeatSource>* sets, const Value
     ForEach(this->Parallel, triangles,
       [&](Index t)
       {
-        const TriangleMesh::Shape& shape = mesh.Shapes()[static_cast<std::size_t>(t)];
+        const TriangleMesh::Shape shape = mesh.Shapes()[static_cast<std::size_t>(t)];
         Eigen::Vector3d u, d;
         for (int a = 0; a < 3; ++a)
         {

@@ -131,7 +131,7 @@ private:
       {
         continue;
       }
-      const TriangleMesh::Shape& shape = this->Mesh.Shapes()[static_cast<std::size_t>(next)];
+      const TriangleMesh::Shape shape = this->Mesh.Shapes()[static_cast<std::size_t>(next)];
       const int third = (corner % 3 + step) % 3;
       const int second = 3 - corner % 3 - third;
       const double fromA = shape.EdgeLength(second); // of the third corner
@@ -179,9 +179,8 @@ void AppendFronts(const TriangleMesh& mesh, const FrontShapes& shapes, const Sou
     }
   }
   const bool around = shapes.empty();
-  const FrontShapes& measured = around ? mesh.Shapes() : shapes;
-  Spreading(mesh, measured[static_cast<std::size_t>(piece.Triangle)], piece, nextPoint, fronts)
-    .Spread(around);
+  const auto t = static_cast<std::size_t>(piece.Triangle);
+  Spreading(mesh, around ? mesh.Shapes()[t] : shapes[t], piece, nextPoint, fronts).Spread(around);
 }
 
 void AppendHeat(

@@ -84,7 +84,7 @@ ShapeOperator ShapeOperatorOf(const TriangleMesh& mesh, Index t,
     tangential[0][a] = side * n.dot(axes.col(0));
     tangential[1][a] = side * n.dot(axes.col(1));
   }
-  const TriangleMesh::Shape& s = mesh.Shapes()[t];
+  const TriangleMesh::Shape s = mesh.Shapes()[t];
   const Eigen::Vector2d dx = Gradient(s, tangential[0][0], tangential[0][1], tangential[0][2]);
   const Eigen::Vector2d dy = Gradient(s, tangential[1][0], tangential[1][1], tangential[1][2]);
   return { dx[0], 0.5 * (dx[1] + dy[0]), dy[1] };

@@ -54,7 +54,7 @@ PlaneTensor BeltramiFlow::Diffusivity(Index t, const Metrics& metrics) const
 /// lost their small eigenvalue.
 Eigen::RowVector3d BeltramiFlow::Weights(Index t, const Metrics& metrics) const
 {
-  const TriangleMesh::Shape& shape = this->Mesh().Shapes()[t];
+  const TriangleMesh::Shape shape = this->Mesh().Shapes()[t];
   PlaneTensor plain;
   double determinant = 1.0;
   if (!this->Factors.IsOne())

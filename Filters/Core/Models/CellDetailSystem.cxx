@@ -37,7 +37,7 @@ void CellDetail::TakeDiffusion(Model& model, Eigen::Index column)
       for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
       {
         const Index t = mesh.VertexCorners()[c] / 3;
-        const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+        const TriangleMesh::Shape shape = mesh.Shapes()[t];
         for (int a = 0; a < 3; ++a)
         {
           const double length = shape.EdgeLength(a);

@@ -79,7 +79,7 @@ void StructureDiffusion::FillWeights(
   ForEach(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+      const TriangleMesh::Shape shape = mesh.Shapes()[t];
       const Tensor d = this->Diffusivity(t);
       this->Weighted.row(t) = d.G1 * TensorWeights(shape, d.Square) +
         d.Excess * DirectionalWeights(shape, d.E2[0], d.E2[1]);

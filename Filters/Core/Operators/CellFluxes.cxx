@@ -191,7 +191,7 @@ void CellFluxes::ListSides(
       {
         const Index t = list[k].Corner / 3;
         const Index cell = cells[static_cast<std::size_t>(t)];
-        const TriangleMesh::Shape& shape = this->Mesh.Shapes()[t];
+        const TriangleMesh::Shape shape = this->Mesh.Shapes()[t];
         const double length = shape.EdgeLength(list[k].Corner % 3);
         // The centroid of a polygon that is not convex may be on its edge.
         const double distance = std::max((centres.row(cell) - middle).norm(), 1e-6 * length);

@@ -37,7 +37,7 @@ CornerWeights AnisotropicWeights(const TriangleMesh& mesh, const CornerWeights& 
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      const TriangleMesh::Shape& s = mesh.Shapes()[t];
+      const TriangleMesh::Shape s = mesh.Shapes()[t];
       c.row(t) = AnisotropicWeights(HasDirection(frames, t), isotropic.row(t),
         DirectionalWeights(s, frames(t, 0), frames(t, 1)),
         DirectionalWeights(s, -frames(t, 1), frames(t, 0)), g1[t], g2[t]);

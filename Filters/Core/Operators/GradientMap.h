@@ -40,7 +40,7 @@ public:
 
   GradientMap operator[](Index t) const
   {
-    const TriangleMesh::Shape& s = this->Mesh->Shapes()[t];
+    const TriangleMesh::Shape s = this->Mesh->Shapes()[t];
     const GradientMap plain = { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
     return this->Frames.rows() == 0 ? plain : this->Stretch(t, plain);
   }

@@ -58,7 +58,7 @@ public:
   }
 
 private:
-  const TriangleMesh::Shape& Shape;
+  const TriangleMesh::Shape Shape;
   const double* Corners[3];
   int Count;
   double ValueScale = 1.0, Scale = 1.0;

@@ -54,7 +54,7 @@ void LineFieldOperator::MakeTransports()
   std::vector<signed char> firstWay(this->Medial->NumberOfVertices(), 0);
   for (Index t = 0; t < triangleCount; ++t)
   {
-    const TriangleMesh::Shape& s = this->Surface->Shapes()[t];
+    const TriangleMesh::Shape s = this->Surface->Shapes()[t];
     const Eigen::Vector2d along[3] = { Square(s.X - s.Length, s.Y), Square(s.X, s.Y),
       Square(s.Length, 0.0) };
     for (int a = 0; a < 3; ++a)

@@ -121,7 +121,7 @@ TangentVectors IntrinsicDelaunay::Transport(const Eigen::Ref<const TangentVector
   for (std::size_t t = 0; t < tensors.size(); ++t)
   {
     const auto input = static_cast<Index>(t % inputCount);
-    const TriangleMesh::Shape& shape = this->Input->Shapes()[input];
+    const TriangleMesh::Shape shape = this->Input->Shapes()[input];
     const double dx = lines(input, 0);
     const double dy = lines(input, 1);
     const Tensor front = shape.Area() * Tensor(dx * dx, dx * dy, dy * dy);

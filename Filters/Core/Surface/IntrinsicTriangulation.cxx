@@ -92,7 +92,7 @@ void IntrinsicTriangulation::MakeSheets(const TriangleMesh& mesh, const Parallel
     [&](Index t)
     {
       const auto v = mesh.TriangleVertices().row(t);
-      const TriangleMesh::Shape& s = mesh.Shapes()[t];
+      const TriangleMesh::Shape s = mesh.Shapes()[t];
       const double l0 = s.EdgeLength(0);
       const double l1 = s.EdgeLength(1);
       this->Triangles[t] = { { v[0], v[1], v[2] }, { l0, l1, s.Length }, {} };
@@ -327,13 +327,13 @@ std::shared_ptr<TriangleMesh> IntrinsicTriangulation::MakeMesh(
   const auto count = static_cast<Index>(this->Triangles.size());
   contents.TriangleVertices.resize(count, 3);
   contents.TriangleEdges.resize(count, 3);
-  contents.Shapes.resize(count);
+  contents.Shapes = TriangleMesh::ShapeList(count, this->TwoSheets ? 0.5 : 1.0);
   ForEach(parallel, count,
     [&](Index t)
     {
       const Triangle& triangle = this->Triangles[t];
       const Vec2 apex = Apex(triangle.Lengths);
-      contents.Shapes[t] = { triangle.Lengths[2], apex[0], apex[1], this->TwoSheets ? 0.5 : 1.0 };
+      contents.Shapes.Set(t, triangle.Lengths[2], apex[0], apex[1]);
       contents.TriangleVertices.row(t) << triangle.Vertices[0], triangle.Vertices[1],
         triangle.Vertices[2];
       for (int a = 0; a < 3; ++a)

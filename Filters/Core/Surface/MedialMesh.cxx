@@ -113,10 +113,11 @@ MedialMesh::MedialMesh(const TriangleMesh& mesh)
   medial.ComponentsBegin.push_back(edgeCount);
   medial.TriangleVertices = corners.unaryExpr([&](Index e) { return number[e]; });
 
-  medial.Shapes.reserve(mesh.Shapes().size());
-  for (const TriangleMesh::Shape& s : mesh.Shapes())
+  medial.Shapes = TriangleMesh::ShapeList(mesh.Shapes().Size(), mesh.Shapes().GetWeight());
+  for (Index t = 0; t < mesh.Shapes().Size(); ++t)
   {
-    medial.Shapes.push_back({ 0.5 * s.Length, 0.5 * s.X, 0.5 * s.Y, s.Weight });
+    const TriangleMesh::Shape s = mesh.Shapes()[t];
+    medial.Shapes.Set(t, 0.5 * s.Length, 0.5 * s.X, 0.5 * s.Y);
   }
   medial.InputVertex.resize(edgeCount);
   std::iota(medial.InputVertex.begin(), medial.InputVertex.end(), 0);

@@ -127,13 +127,14 @@ public:
       }).Items;
     this->Mesh.InputTriangle.resize(count);
     this->Mesh.TriangleVertices.resize(count, 3);
-    this->Mesh.Shapes.resize(count);
+    this->Mesh.Shapes = TriangleMesh::ShapeList(count);
     ForEach(this->Parallel, count,
       [&](Index t)
       {
         this->Mesh.InputTriangle[t] = this->Selected[order[t]];
         this->Mesh.TriangleVertices.row(t) = this->Corners.row(order[t]);
-        this->Mesh.Shapes[t] = this->ShapeOf(this->Mesh.InputTriangle[t]);
+        const TriangleMesh::Shape shape = this->ShapeOf(this->Mesh.InputTriangle[t]);
+        this->Mesh.Shapes.Set(t, shape.Length, shape.X, shape.Y);
       });
   }
 

@@ -158,7 +158,7 @@ void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
   Contents& mesh = this->Given;
   const auto halfPerimeter = [&](Index t)
   {
-    const Shape& shape = mesh.Shapes[t];
+    const Shape shape = mesh.Shapes[t];
     return 0.5 * (shape.Length + shape.EdgeLength(0) + shape.EdgeLength(1));
   };
   mesh.TotalEdgeLength = Sum(parallel, this->NumberOfTriangles(), halfPerimeter);

@@ -8,7 +8,9 @@
 #include "Core/Foundation/Reduction.h"
 #include "Core/Foundation/Types.h"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -46,9 +48,7 @@ public:
   struct Shape
   {
     double Length, X, Y;
-    /// The fraction of its area that counts: 1/2 if two sheets cover the surface (see
-    /// IntrinsicTriangulation.h).
-    double Weight = 1.0;
+    double Weight = 1.0; ///< see ShapeList
     double Area() const { return 0.5 * Length * Y * Weight; }
     /// Length of the edge opposite corner a.
     double EdgeLength(int a) const
@@ -58,6 +58,36 @@ public:
     }
   };
 
+  /// The shapes of all triangles: their numbers, and one weight.
+  class ShapeList
+  {
+  public:
+    ShapeList() = default;
+    /// weight: the fraction of the areas that counts, 1/2 if two sheets cover the surface (see
+    /// IntrinsicTriangulation.h).
+    explicit ShapeList(Index count, double weight = 1.0)
+      : Numbers(static_cast<std::size_t>(count))
+      , Weight(weight)
+    {
+    }
+
+    Index Size() const { return static_cast<Index>(this->Numbers.size()); }
+    Shape operator[](std::size_t t) const
+    {
+      const auto [length, x, y] = this->Numbers[t];
+      return { length, x, y, this->Weight };
+    }
+    void Set(std::size_t t, double length, double x, double y)
+    {
+      this->Numbers[t] = { length, x, y };
+    }
+    double GetWeight() const { return this->Weight; }
+
+  private:
+    Buffer<std::array<double, 3>> Numbers;
+    double Weight = 1.0;
+  };
+
   /// All that a mesh is given; the rest follows from it. See the accessors of the same names.
   struct Contents
   {
@@ -65,7 +95,7 @@ public:
     std::vector<Index> InputTriangle;
     Triangles TriangleVertices;
     Triangles TriangleEdges; ///< no row: an edge is known by its two vertices
-    std::vector<Shape> Shapes;
+    ShapeList Shapes;
     std::vector<Index> ComponentsBegin;
     std::vector<Index> BoundaryVertices;
     Vector ControlAreas; ///< no entries: a third of the triangles around each vertex
@@ -101,7 +131,7 @@ public:
   /// m x 3 numbers of the edges opposite the corners, below 3 m, if two edges of an intrinsic
   /// triangulation can have the same two vertices. Otherwise no row.
   const Triangles& TriangleEdges() const { return this->Given.TriangleEdges; }
-  const std::vector<Shape>& Shapes() const { return this->Given.Shapes; }
+  const ShapeList& Shapes() const { return this->Given.Shapes; }
 
   /// The triangles around vertex i are entries VertexCornersBegin()[i] .. [i + 1] of
   /// VertexCorners(): 3 t + a for corner a of triangle t, ascending.

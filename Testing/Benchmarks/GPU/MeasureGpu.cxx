@@ -228,7 +228,7 @@ struct Problem
     mesh = 1e3 * (Now() - start);
     const double second = Now();
     this->Operators = std::make_shared<Assembler>(this->Mesh, parallel);
-    TakePattern(this->Operators->Pattern(), this->Matrix, parallel);
+    this->Operators->TakePattern(this->Matrix, parallel);
     pattern = 1e3 * (Now() - second);
   }
 
@@ -602,8 +602,13 @@ private:
     };
 
     const double start = Now();
-    const auto* const shapes = reinterpret_cast<const double*>(mesh.Shapes().data());
+    std::vector<TriangleMesh::Shape> listed;
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      listed.push_back(mesh.Shapes()[t]);
+    }
     static_assert(sizeof(TriangleMesh::Shape) == 4 * sizeof(double), "Shapes are four numbers");
+    const auto* const shapes = reinterpret_cast<const double*>(listed.data());
     Gpu::Minimizer device({ n, mesh.NumberOfTriangles(), mesh.TriangleVertices().data(), shapes,
                             mesh.VertexCornersBegin().data(), mesh.VertexCorners().data(),
                             problem.Matrix.outerIndexPtr(), problem.Matrix.innerIndexPtr() },

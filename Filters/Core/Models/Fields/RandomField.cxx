@@ -86,7 +86,7 @@ std::vector<double> SizesOfComponents(const TriangleMesh& mesh)
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const auto after = std::upper_bound(begin.begin(), begin.end(), mesh.TriangleVertices()(t, 0));
-    const TriangleMesh::Shape& s = mesh.Shapes()[t];
+    const TriangleMesh::Shape s = mesh.Shapes()[t];
     sizes[static_cast<std::size_t>(after - begin.begin()) - 1] +=
       s.Length + std::hypot(s.X, s.Y) + std::hypot(s.Length - s.X, s.Y);
   }
@@ -144,8 +144,8 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
     this->RelativeDeviations = variances.cwiseSqrt() / made.DeviationOnPlane;
   }
   auto solver = MakeResolventSolver(mesh, made.Step, made.Series, parallel);
-  this->Operator.emplace(this->Assembly, coefficients, made.Step, std::move(made.Series),
-    std::move(solver), parallel);
+  this->Operator.emplace(
+    this->Assembly, coefficients, made.Step, std::move(made.Series), std::move(solver), parallel);
 }
 
 void RandomField::Draw(

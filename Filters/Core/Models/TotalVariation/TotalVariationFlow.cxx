@@ -295,7 +295,7 @@ const CornerWeights& TotalVariationFlow::DiffusionWeights(Eigen::Index column)
   ForEach(this->Parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
-      const TriangleMesh::Shape& shape = mesh.Shapes()[t];
+      const TriangleMesh::Shape shape = mesh.Shapes()[t];
       const auto u = [&](int a, Eigen::Index k)
       { return this->U(mesh.TriangleVertices()(t, a), k); };
       double squared = 0.0;
