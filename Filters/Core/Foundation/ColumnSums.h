@@ -110,6 +110,17 @@ public:
   }
 
   double operator[](std::size_t sum) const { return this->Total[sum]; }
+  /// The largest number that add() left in this place at the end of a block, for a place where it
+  /// keeps the largest of numbers >= 0 in place of their sum. Of this process.
+  double Largest(std::size_t sum) const
+  {
+    double largest = 0.0;
+    for (std::size_t place = sum; place < this->Partial.size(); place += this->Total.size())
+    {
+      largest = std::max(largest, this->Partial[place]);
+    }
+    return largest;
+  }
   const std::vector<double>& Totals() const { return this->Total; }
 
 private:

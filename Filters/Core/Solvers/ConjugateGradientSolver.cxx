@@ -6,6 +6,7 @@
 #include "Core/Operators/Assembler.h"
 #include "Core/Operators/SparsePattern.h"
 #include "Core/Solvers/Multigrid.h"
+#include "Core/Solvers/SinglePrecisionPasses.h"
 #include "Core/Solvers/SinglePrecisionSolver.h"
 
 #include <algorithm>
@@ -76,9 +77,10 @@ public:
         Sum(this->Parallel, static_cast<Index>(this->Lines.Vertices().size()),
           [&](Index k)
           { return this->Lines.Share(k) / this->InverseDiagonal[this->Lines.Vertices()[k]]; }));
-      this->Share = this->RowSums[0] / (this->RowSums[1] - alongLines);
+      this->Passes.SetShares(this->RowSums[0] / (this->RowSums[1] - alongLines),
+        this->OverProcesses.IsSerial() ? 1.0 / this->RowSums.Largest(2) : 0.0);
     }
-    if (this->Share >= SmallestShareOfOnePass)
+    if (this->Passes.MayHelp())
     {
       this->Single.SetMatrix(matrix, this->InverseDiagonal, this->Lines);
     }
@@ -115,25 +117,16 @@ public:
   }
 
 private:
-  /// (1 + lambda dt) M + dt K has the row sums of its first term, whose share in the diagonal
-  /// measures the condition: 7e-4 is the diffusion number 300. Below, rounding to single precision
-  /// costs more iterations than their speed gains, unless one pass reaches the tolerance.
-  static constexpr double SmallestShare = 7e-4;
-  static constexpr double SmallestShareOfOnePass = 1e-4;
-  static constexpr double MostOfOnePass = 1e-5;
-  /// From here on (the diffusion number 3), round-off of single precision does no harm to a
-  /// reduction by MostOfOnePass either; otherwise it is 1e-4.
-  static constexpr double SmallestShareOfLongPasses = 0.05;
-
-  /// InverseDiagonal and the sums of the rows and of the diagonal, in one pass over the matrix.
+  /// InverseDiagonal, the sums of the rows and of the diagonal, and the largest ratio of an entry of
+  /// the diagonal to the sum of its row, in one pass over the matrix.
   void InvertDiagonal(const SparseMatrix& matrix)
   {
     const Index n = static_cast<Index>(matrix.rows());
     const Index* const outer = matrix.outerIndexPtr();
     const Index* const inner = matrix.innerIndexPtr();
     const double* const values = matrix.valuePtr();
-    this->RowSums.Resize(n, 2);
-    this->RowSums.Run<2>(this->Parallel, n, 2,
+    this->RowSums.Resize(n, 3);
+    this->RowSums.Run<3>(this->Parallel, n, 3,
       [&](Index i, double* sums)
       {
         double sum = 0.0; // of a row first: large entries cancel
@@ -147,6 +140,8 @@ private:
         this->InverseDiagonal[i] = diagonal;
         sums[0] += sum;
         sums[1] += diagonal;
+        sums[2] =
+          std::max(sums[2], sum > 0.0 ? diagonal / sum : std::numeric_limits<double>::infinity());
       });
     this->RowSums.Reduce(this->OverProcesses);
     this->TakeInverse();
@@ -226,7 +221,7 @@ private:
     SolveReport report;
     report.Converged = false;
     this->HasStoppedEarly = false;
-    const bool refines = this->Share >= SmallestShareOfOnePass;
+    const bool refines = this->Passes.MayHelp();
     const double begin = refines ? 0.9 : 0.0;
     if (refines)
     {
@@ -300,16 +295,17 @@ private:
   SolveReport Refine(const Values& b, Values& x, const ProgressMonitor& progress)
   {
     constexpr int longestPass = 256;
+    constexpr double fewestResolved = 16.0;
     std::optional<ConvergenceForecast> forecast;
     const ColumnCount<K> k(b.cols());
-    this->Corrections.assign(k, SinglePrecisionSolver::Column());
+    this->Passes.Start(k);
     Values& before = this->Work.P; // iterations in double precision begin with a new one
     Resize(before, x.rows(), x.cols());
     SolveReport report;
     double done = 0.0;
     while (true)
     {
-      const double passes = this->PlanPass(report);
+      const double passes = this->Passes.Plan(this->Work, this->Limits.Tolerance, report);
       const int left = this->Limits.MaximumNumberOfIterations - report.Iterations;
       if (!forecast)
       {
@@ -322,19 +318,31 @@ private:
         return report;
       }
       const double end = done + (1.0 - done) / passes;
-      ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
-        [&](Index, Index first, Index last)
-        {
-          const double* const from = x.data() + static_cast<std::ptrdiff_t>(first) * k;
-          double* const to = before.data() + static_cast<std::ptrdiff_t>(first) * k;
-          std::copy_n(from, static_cast<std::ptrdiff_t>(last - first) * k, to);
-        });
+      const double resolved = passes == 1.0 ? this->Passes.ResolvedIterations() : 0.0;
+      const bool isResolved = resolved >= fewestResolved;
+      if (!isResolved)
+      {
+        ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
+          [&](Index, Index first, Index last)
+          {
+            const double* const from = x.data() + static_cast<std::ptrdiff_t>(first) * k;
+            double* const to = before.data() + static_cast<std::ptrdiff_t>(first) * k;
+            std::copy_n(from, static_cast<std::ptrdiff_t>(last - first) * k, to);
+          });
+      }
+      const int longest =
+        isResolved && resolved < longestPass ? static_cast<int>(resolved) : longestPass;
       forecast->StartPass(report.Iterations);
-      report.Iterations += this->Single.Correct(this->Residual, this->Corrections,
-        std::min(left, longestPass), x, progress.Part(done, end), &*forecast);
+      report.Iterations += this->Single.Correct(this->Residual, this->Passes.Columns,
+        std::min(left, longest), x, progress.Part(done, end), &*forecast);
       done = end;
+      if (isResolved && this->Passes.HaveReachedGoals(report))
+      {
+        report.Forecast = forecast->Largest();
+        return report;
+      }
       this->UpdateResidual<K>(b, x);
-      if (this->TakeBackFailures(before, x))
+      if (!isResolved && this->TakeBackFailures(before, x))
       {
         this->UpdateResidual<K>(b, x);
       }
@@ -347,55 +355,15 @@ private:
   bool TakeBackFailures(const Values& before, Values& x)
   {
     bool any = false;
-    for (std::size_t c = 0; c < this->Corrections.size(); ++c)
+    for (std::size_t c = 0; c < this->Passes.Columns.size(); ++c)
     {
-      if (!(std::sqrt(this->Work.Sums[c]) <= this->Corrections[c].Length))
+      if (!(std::sqrt(this->Work.Sums[c]) <= this->Passes.Columns[c].Length))
       {
         x.col(static_cast<Eigen::Index>(c)) = before.col(static_cast<Eigen::Index>(c));
         any = true;
       }
     }
     return any;
-  }
-
-  /// Decide for each column by how much the next pass reduces its residual, which has been
-  /// measured. Returns the largest number of passes that are left, or 0.
-  double PlanPass(SolveReport& report)
-  {
-    const double most = this->Share >= SmallestShareOfLongPasses ? MostOfOnePass : 1e-4;
-    constexpr double least = 0.1; // a pass that gains less is the last one of its column
-    double passes = 0.0;
-    report.Residual = 0.0;
-    for (std::size_t c = 0; c < this->Corrections.size(); ++c)
-    {
-      SinglePrecisionSolver::Column& column = this->Corrections[c];
-      const double before = column.Length;
-      column.Length = std::sqrt(this->Work.Sums[c]);
-      column.Unit = this->Work.Unit[c];
-      column.ReferenceLength = std::sqrt(this->Work.Reference[c]);
-      column.Reduction = 1.0;
-      const double residual = column.Length / column.ReferenceLength;
-      if (!std::isfinite(residual))
-      {
-        report.Converged = false; // iterations in double precision report it
-        return 0.0;
-      }
-      report.Residual = std::max(report.Residual, residual);
-      const bool hasStalled = before > 0.0 && !(column.Length <= least * before);
-      if (residual > this->Limits.Tolerance && !hasStalled)
-      {
-        const double needed = 0.7 * this->Limits.Tolerance / residual;
-        const double ofColumn =
-          needed >= MostOfOnePass ? 1.0 : std::ceil(std::log(needed) / std::log(most));
-        if (ofColumn == 1.0 || this->Share >= SmallestShare)
-        {
-          column.Reduction = std::pow(needed, 1.0 / ofColumn);
-          passes = std::max(passes, ofColumn);
-        }
-      }
-    }
-    report.Converged = report.Residual <= this->Limits.Tolerance;
-    return passes;
   }
 
   /// The residual and its squares in the norm of D^-1, in Work.Sums.
@@ -441,10 +409,9 @@ private:
   Vector InverseDiagonal;
   StrongLines Lines; ///< without a hierarchy
   SinglePrecisionSolver Single;
+  SinglePrecisionPasses Passes;
   bool HasStoppedEarly = false; ///< before iterations in double precision
-  double Share = 0.0; ///< of row sums in the diagonal without entries along lines
   ColumnSums RowSums;
-  std::vector<SinglePrecisionSolver::Column> Corrections;
   Values Residual; ///< in Work.Unit
   Values ConsistentB; ///< over several processes
   std::vector<double> Scales;

@@ -131,6 +131,7 @@ void SinglePrecisionSolver::Take(const Values& r, const Group& group)
   {
     Column& column = group.Columns[c];
     scale[c] = 0.0;
+    column.Reached = column.Length;
     solved[c] = column.Reduction < 1.0;
     if (solved[c])
     {
@@ -248,8 +249,8 @@ int SinglePrecisionSolver::Iterate(const Group& group, int maximumNumberOfIterat
           column.DirectionSquare = rho + turn * turn * column.DirectionSquare;
         }
         isFinished = isFinished && !active[c];
-        residual =
-          std::max(residual, std::sqrt(sums[c]) * column.FirstLength / column.ReferenceLength);
+        column.Reached = std::sqrt(sums[c]) * column.FirstLength;
+        residual = std::max(residual, column.Reached / column.ReferenceLength);
       }
     }
     isFinished = (forecast && forecast->Update(iterations, residual)) || isFinished;

@@ -40,6 +40,7 @@ public:
     double Length = 0.0; ///< of its residual, in this unit and the norm of D^-1
     double ReferenceLength = 1.0; ///< that of the relative residual 1, likewise
     double Reduction = 1.0; ///< the factor by which to reduce this length; 1: leave the column
+    double Reached = 0.0; ///< the length after the iterations, by their recurrence
     /// Of the first residual of the iteration, the unit of single precision; 0: it begins.
     double FirstLength = 0.0;
     // Before the last step, in the unit of single precision:

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Solvers/ConjugateGradients.h"
+#include "Core/Solvers/LinearSolver.h"
+#include "Core/Solvers/SinglePrecisionSolver.h"
+
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// Plans the passes of SinglePrecisionSolver, from one residual in double precision to the next.
+class SinglePrecisionPasses
+{
+public:
+  /// share: of the sums of the rows in the diagonal, without entries along lines. (1 + lambda dt) M +
+  /// dt K has the row sums of its first term, so that this measures the condition: 7e-4 is the
+  /// diffusion number 300. leastShare: the smallest of a row, or 0 if it is not known.
+  void SetShares(double share, double leastShare)
+  {
+    this->Share = share;
+    this->LeastShare = leastShare;
+  }
+
+  /// Whether rounding to single precision may cost less than its speed gains.
+  bool MayHelp() const;
+
+  void Start(int columns) { this->Columns.assign(columns, SinglePrecisionSolver::Column()); }
+
+  /// Decide for each column by how much the next pass reduces its residual, whose squares, unit and
+  /// reference are in `measured`. Returns the largest number of passes that are left, or 0.
+  double Plan(const ConjugateGradientWork& measured, double tolerance, SolveReport& report);
+
+  /// The iterations of the last pass planned for which their recurrence is sure to know the residual
+  /// up to the share of the tolerance that the pass leaves for round-off.
+  double ResolvedIterations() const;
+
+  /// After a last pass of no more iterations than these: whether it has brought every column within
+  /// the tolerance.
+  bool HaveReachedGoals(SolveReport& report) const;
+
+  std::vector<SinglePrecisionSolver::Column> Columns;
+
+private:
+  double Share = 0.0, LeastShare = 0.0;
+};
+
+} // namespace SurfaceDiffusion
