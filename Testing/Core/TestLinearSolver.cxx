@@ -4,6 +4,7 @@
 #include "Core/Operators/ResidualSquares.h"
 #include "Core/Solvers/SolverChoice.h"
 #include "Meshes.h"
+#include "NeedleMeshes.h"
 #include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
@@ -322,6 +323,54 @@ INSTANTIATE_TEST_SUITE_P(LinearSolver, IterativeSolver,
   ::testing::Values(Kind{ "ConjugateGradient", [] { return MakeConjugateGradientSolver(); } },
     Kind{ "Multigrid", [] { return MakeMultigridSolver(); } }),
   [](const auto& parameter) { return parameter.param.Name; });
+
+/// The residual of the last iterations is known by their recurrence alone where round-off cannot have
+/// moved it.
+TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidual)
+{
+  const Surface blown = Joined(Icosphere(3), Moved(Scaled(Icosphere(3), 1e-3), { 5.0, 0.0, 0.0 }));
+  const std::vector<Surface> surfaces = { Icosphere(4), LatitudeLongitudeSphere(60, 40), blown,
+    CylinderWithFans(40, 20), Jittered(Plate(24, 1.0), 0.03, -0.9, 0.9, -0.9, 0.9) };
+  for (std::size_t s = 0; s < surfaces.size(); ++s)
+  {
+    const auto assembler = MakeAssembler(surfaces[s]);
+    const double h = MeanEdge(assembler->Mesh());
+    const auto n = static_cast<Eigen::Index>(assembler->Mesh().NumberOfVertices());
+    for (const bool isHeld : { false, true })
+    {
+      for (const double diffusionNumber : { 0.1, 1.0, 10.0, 100.0 })
+      {
+        SparseMatrix matrix = HeatMatrix(*assembler, diffusionNumber * h * h);
+        if (isHeld)
+        {
+          Values load(n, 1);
+          assembler->Constrain(
+            matrix, Noise(assembler->Mesh(), 1, 3).col(0).array() > 0.5, Values::Zero(n, 1), load);
+        }
+        const Vector scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+        for (const double tolerance : { 1e-2, 1e-4, 1e-7, 1e-10 })
+        {
+          const std::unique_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
+          solver->SetLimits({ tolerance, 1000 });
+          solver->SetMatrix(matrix);
+          const Values b = Noise(assembler->Mesh(), 2);
+          Values x = 0.5 * b; // the second solve starts near its solution
+          for (const double factor : { 1.0, 1.001 })
+          {
+            const SolveReport report = solver->Solve(factor * b, x);
+            const Values left = scale.asDiagonal() * (factor * b - matrix * x);
+            const Values whole = scale.asDiagonal() * (factor * b);
+            const double residual =
+              (left.colwise().norm().array() / whole.colwise().norm().array()).maxCoeff();
+            EXPECT_LE(report.Residual, 2.1 * tolerance); // of iterations in double precision
+            EXPECT_LE(residual, 1.0001 * report.Residual + 1e-14)
+              << s << " " << isHeld << " " << diffusionNumber << " " << tolerance;
+          }
+        }
+      }
+    }
+  }
+}
 
 /// Diffusion along a direction only, at a long step, from the second step of a run that a fuzzer
 /// found: in single precision the iterates grow beyond all bounds.
