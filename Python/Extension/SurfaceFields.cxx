@@ -141,9 +141,9 @@ double SurfaceFields::MeanEdgeLength() const
 {
   const TriangleMesh& mesh = this->Built->InputMesh();
   double drawn = 0.0;
-  for (const TriangleMesh::Shape& shape : mesh.Shapes())
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    drawn += shape.Area();
+    drawn += mesh.Shapes()[t].Area();
   }
   const double edges = mesh.NumberOfEdges();
   return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges *

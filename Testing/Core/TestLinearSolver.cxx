@@ -372,6 +372,81 @@ TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidual)
   }
 }
 
+namespace
+{
+
+/// The largest over the columns, as SolveReport::Residual.
+double ResidualOf(const SparseMatrix& matrix, const Values& b, const Values& x)
+{
+  const Vector scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  const Values left = scale.asDiagonal() * (b - matrix * x);
+  const Values whole = scale.asDiagonal() * b;
+  return (left.colwise().norm().array() / whole.colwise().norm().array()).maxCoeff();
+}
+
+} // namespace
+
+/// Signs of line fields turn entries around, so that rows have large sums and the smallest eigenvalue
+/// is as small as without them.
+TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidualWithSigns)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const TriangleMesh& mesh = assembler->Mesh();
+  const double h = MeanEdge(mesh);
+  CornerWeights signs(mesh.NumberOfTriangles(), 3);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    const auto v = mesh.TriangleVertices().row(t);
+    for (int a = 0; a < 3; ++a)
+    {
+      signs(t, a) = (v[(a + 1) % 3] + v[(a + 2) % 3]) % 2 == 0 ? 1.0 : -1.0;
+    }
+  }
+  for (const double diffusionNumber : { 1.0, 100.0, 1e5, 1e6 })
+  {
+    SparseMatrix matrix = ZeroMatrix(assembler->Pattern());
+    assembler->Fill(matrix, mesh.ControlAreas(), diffusionNumber * h * h, CotanWeights(mesh),
+      nullptr, SerialFor(), &signs);
+    for (const double tolerance : { 1e-2, 1e-4 })
+    {
+      const std::unique_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
+      solver->SetLimits({ tolerance, 5000 });
+      solver->SetMatrix(matrix);
+      const Values b = Noise(mesh);
+      Values x = Values::Zero(b.rows(), 1);
+      const SolveReport report = solver->Solve(b, x);
+      EXPECT_LE(report.Residual, 2.1 * tolerance);
+      EXPECT_LE(ResidualOf(matrix, b, x), 1.0001 * report.Residual) << diffusionNumber;
+    }
+  }
+}
+
+/// A long step leaves the first column to double precision, while single precision is enough for the
+/// second one.
+TEST(ConjugateGradient, SolvesAColumnFarFromItsSolutionBesideANearOne)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  const double h = MeanEdge(assembler->Mesh());
+  for (const double diffusionNumber : { 100.0, 400.0, 700.0, 1500.0 })
+  {
+    const SparseMatrix matrix = HeatMatrix(*assembler, diffusionNumber * h * h);
+    const Values exact = Noise(assembler->Mesh(), 2);
+    const Values b = matrix * exact;
+    for (const double distance : { 2.0, 5.0, 30.0 })
+    {
+      constexpr double tolerance = 1e-7;
+      Values x = Values::Zero(b.rows(), 2);
+      x.col(1) = exact.col(1) + distance * tolerance * Noise(assembler->Mesh(), 1, 3);
+      const std::unique_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
+      solver->SetLimits({ tolerance, 5000 });
+      solver->SetMatrix(matrix);
+      const SolveReport report = solver->Solve(b, x);
+      EXPECT_TRUE(report.Converged);
+      EXPECT_LE(ResidualOf(matrix, b, x), 2.1 * tolerance) << diffusionNumber << " " << distance;
+    }
+  }
+}
+
 /// Diffusion along a direction only, at a long step, from the second step of a run that a fuzzer
 /// found: in single precision the iterates grow beyond all bounds.
 TEST(ConjugateGradient, MeetsTheToleranceWhereSinglePrecisionDiverges)

@@ -217,6 +217,7 @@ private:
     // It knows the edges now, and needs the memory.
     this->Graph.Ring = IndexLists();
     this->Graph.Across = IndexLists();
+    this->Geometry.Widths = Vector();
     const int count = scheme.VariationIterations;
     for (int i = 0; i < count; ++i)
     {

@@ -44,13 +44,17 @@ struct DenoisedPart
   Points Displacements;
 };
 
-/// fixed: per row of the part, may be empty.
-DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed,
+/// fixed: per row of the part, may be empty. The part loses its places and faces, which the mesh
+/// has.
+DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   const DenoisingSettings& settings, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const TriangleMesh mesh(part.Places, part.Faces, parallel);
   const double unit = mesh.LengthUnit();
   const Points points = GatherVertices(mesh, part.Places) / unit;
+  const Eigen::Index rows = part.Places.rows();
+  part.Places = Points();
+  part.Faces = Triangles();
   progress.Report(0.02);
   const double given = settings.NoiseLevel / unit;
   const CorrelatedNoise correlated = given > 0.0 && settings.Type == SurfaceType::Organic
@@ -60,7 +64,7 @@ DenoisedPart DenoisePart(const SurfacePart& part, const std::vector<char>& fixed
   progress.Report(0.05);
   DenoisedPart result;
   result.NoiseLevel = noise * unit;
-  result.Displacements = Points::Zero(part.Places.rows(), 3);
+  result.Displacements = Points::Zero(rows, 3);
   if (!(noise > SmallestNoise * mesh.MeanEdgeLength()))
   {
     return result;
@@ -112,7 +116,7 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
   const std::vector<char>& fixed, const DenoisingSettings& settings, DenoisingReport* report,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
-  const std::vector<SurfacePart> parts = DivideSurface(
+  std::vector<SurfacePart> parts = DivideSurface(
     mesh, points, settings.NoiseLevel > 0.0 ? PartUnit::Common : PartUnit::OwnEdges, parallel);
   progress.Report(0.02);
   DenoisingReport found;
@@ -121,7 +125,7 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
   const double count = std::max<Index>(1, mesh.NumberOfVertices());
   double done = 0.0;
   double variance = 0.0;
-  for (const SurfacePart& part : parts)
+  for (SurfacePart& part : parts)
   {
     const std::size_t size = part.Vertices.size();
     std::vector<char> isFixed;

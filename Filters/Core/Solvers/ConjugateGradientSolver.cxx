@@ -118,7 +118,7 @@ public:
 
 private:
   /// InverseDiagonal, the sums of the rows and of the diagonal, and the largest ratio of an entry of
-  /// the diagonal to the sum of its row, in one pass over the matrix.
+  /// the diagonal to what it exceeds the others of its row by, in one pass over the matrix.
   void InvertDiagonal(const SparseMatrix& matrix)
   {
     const Index n = static_cast<Index>(matrix.rows());
@@ -130,18 +130,21 @@ private:
       [&](Index i, double* sums)
       {
         double sum = 0.0; // of a row first: large entries cancel
+        double absolute = 0.0;
         Index below = 0; // entries before the diagonal, see DiagonalEntry()
         for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
         {
           sum += values[slot];
+          absolute += std::abs(values[slot]);
           below += inner[slot] < i;
         }
         const double diagonal = values[outer[i] + below];
         this->InverseDiagonal[i] = diagonal;
         sums[0] += sum;
         sums[1] += diagonal;
-        sums[2] =
-          std::max(sums[2], sum > 0.0 ? diagonal / sum : std::numeric_limits<double>::infinity());
+        const double excess = 2.0 * diagonal - absolute;
+        sums[2] = std::max(
+          sums[2], excess > 0.0 ? diagonal / excess : std::numeric_limits<double>::infinity());
       });
     this->RowSums.Reduce(this->OverProcesses);
     this->TakeInverse();
@@ -289,13 +292,12 @@ private:
     return largest;
   }
 
-  /// Iterations in single precision with residuals in double precision, until all columns are
-  /// within the tolerance or can come no closer.
+  /// Iterations in single precision with residuals in double precision, except a last one that
+  /// round-off cannot have moved, until all columns are within the tolerance or can come no closer.
   template <int K>
   SolveReport Refine(const Values& b, Values& x, const ProgressMonitor& progress)
   {
     constexpr int longestPass = 256;
-    constexpr double fewestResolved = 16.0;
     std::optional<ConvergenceForecast> forecast;
     const ColumnCount<K> k(b.cols());
     this->Passes.Start(k);
@@ -318,31 +320,26 @@ private:
         return report;
       }
       const double end = done + (1.0 - done) / passes;
-      const double resolved = passes == 1.0 ? this->Passes.ResolvedIterations() : 0.0;
-      const bool isResolved = resolved >= fewestResolved;
-      if (!isResolved)
-      {
-        ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
-          [&](Index, Index first, Index last)
-          {
-            const double* const from = x.data() + static_cast<std::ptrdiff_t>(first) * k;
-            double* const to = before.data() + static_cast<std::ptrdiff_t>(first) * k;
-            std::copy_n(from, static_cast<std::ptrdiff_t>(last - first) * k, to);
-          });
-      }
-      const int longest =
-        isResolved && resolved < longestPass ? static_cast<int>(resolved) : longestPass;
+      ForEachBlock(this->Parallel, static_cast<Index>(x.rows()),
+        [&](Index, Index first, Index last)
+        {
+          const double* const from = x.data() + static_cast<std::ptrdiff_t>(first) * k;
+          double* const to = before.data() + static_cast<std::ptrdiff_t>(first) * k;
+          std::copy_n(from, static_cast<std::ptrdiff_t>(last - first) * k, to);
+        });
       forecast->StartPass(report.Iterations);
-      report.Iterations += this->Single.Correct(this->Residual, this->Passes.Columns,
-        std::min(left, longest), x, progress.Part(done, end), &*forecast);
+      const int iterations = this->Single.Correct(this->Residual, this->Passes.Columns,
+        std::min(left, longestPass), x, progress.Part(done, end), &*forecast);
+      report.Iterations += iterations;
       done = end;
-      if (isResolved && this->Passes.HaveReachedGoals(report))
+      if (passes == 1.0 &&
+        this->Passes.HaveReachedGoals(iterations, this->Limits.Tolerance, report))
       {
         report.Forecast = forecast->Largest();
         return report;
       }
       this->UpdateResidual<K>(b, x);
-      if (!isResolved && this->TakeBackFailures(before, x))
+      if (this->TakeBackFailures(before, x))
       {
         this->UpdateResidual<K>(b, x);
       }

@@ -17,7 +17,7 @@ struct SolveReport
 {
   int Iterations = 0; ///< the most over the columns; 0 for a direct method
   /// Largest over the columns of |b - A x| / |b| in the norm of diag(A)^-1, in which the equations
-  /// of small and of badly shaped cells count alike.
+  /// of small and of badly shaped cells count alike; or a bound of it that is within the tolerance.
   double Residual = 0.0;
   /// Whether Residual is within the tolerance.
   bool Converged = true;
@@ -104,7 +104,8 @@ std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = S
 /// Conjugate gradients with the preconditioner StrongLines, all columns in one pass over the
 /// matrix, each with its own step lengths. The paper's PBCG is this method for symmetric matrices
 /// (Appendix). Unless the matrix is stiff, the iterations are in single precision and measure their
-/// residuals in double precision (SinglePrecisionSolver), to the same tolerance.
+/// residuals in double precision (SinglePrecisionSolver), but for a last one that round-off cannot have
+/// moved, to the same tolerance.
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
   const ParallelFor& parallel = SerialFor());
 

@@ -42,6 +42,7 @@ double SinglePrecisionPasses::Plan(
     SinglePrecisionSolver::Column& column = this->Columns[c];
     const double before = column.Length;
     column.Length = std::sqrt(measured.Sums[c]);
+    column.Reached = column.Length; // of a column that iterations leave
     column.Unit = measured.Unit[c];
     column.ReferenceLength = std::sqrt(measured.Reference[c]);
     column.Reduction = 1.0;
@@ -71,8 +72,9 @@ double SinglePrecisionPasses::Plan(
 
 /// After k iterations the residual b - A y of what a pass adds, y, differs from that of the recurrence
 /// by about k epsilon |A| |y| (A. Greenbaum, SIAM J. Matrix Anal. Appl. 18, 1997). With unit
-/// diagonal, the largest eigenvalue of A is a few units, and the smallest one is at least LeastShare,
-/// since K has none below zero; therefore |y| <= |r| / LeastShare.
+/// diagonal the eigenvalues of A are between LeastShare and 2 - LeastShare, so that |y| is at most about
+/// |r| / LeastShare. The factor leaves room for the length of the rows and for a pass that goes on along
+/// the last direction.
 double SinglePrecisionPasses::ResolvedIterations() const
 {
   constexpr double perIteration = 8.0 * std::numeric_limits<float>::epsilon();
@@ -84,22 +86,29 @@ double SinglePrecisionPasses::ResolvedIterations() const
   return (1.0 / Aim - 1.0) * least * this->LeastShare / perIteration;
 }
 
-bool SinglePrecisionPasses::HaveReachedGoals(SolveReport& report) const
+bool SinglePrecisionPasses::HaveReachedGoals(
+  int iterations, double tolerance, SolveReport& report) const
 {
+  const double resolved = this->ResolvedIterations();
+  if (!(iterations <= resolved))
+  {
+    return false;
+  }
   double largest = 0.0;
   for (const SinglePrecisionSolver::Column& column : this->Columns)
   {
-    double length = column.Length;
-    if (column.Reduction < 1.0)
+    const double goal = column.Reduction * column.Length;
+    const double roundOff =
+      column.Reduction < 1.0 ? (1.0 / Aim - 1.0) * goal * iterations / resolved : 0.0;
+    if (!(column.Reached <= goal))
     {
-      const double goal = column.Reduction * column.Length;
-      if (!(column.Reached <= goal))
-      {
-        return false;
-      }
-      length = column.Reached + (1.0 / Aim - 1.0) * goal;
+      return false;
     }
-    largest = std::max(largest, length / column.ReferenceLength);
+    largest = std::max(largest, (column.Reached + roundOff) / column.ReferenceLength);
+  }
+  if (!(largest <= tolerance)) // of a column that this pass has left
+  {
+    return false;
   }
   report.Residual = largest;
   report.Converged = true;

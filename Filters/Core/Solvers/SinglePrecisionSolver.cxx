@@ -131,7 +131,6 @@ void SinglePrecisionSolver::Take(const Values& r, const Group& group)
   {
     Column& column = group.Columns[c];
     scale[c] = 0.0;
-    column.Reached = column.Length;
     solved[c] = column.Reduction < 1.0;
     if (solved[c])
     {
