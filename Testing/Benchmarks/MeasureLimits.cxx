@@ -4,8 +4,8 @@
 // The response time to an abort and the memory of a run, for every filter on a torus of a million
 // vertices (or of the square of the first argument; the second one names the only run to measure):
 // the longest time between two checks for an abort, the progress at which it occurred, and the peak
-// memory per vertex in addition to the input. If other work runs on the machine, the CPU time of all
-// threads between two checks is more reliable than the elapsed time.
+// memory per vertex in addition to the input. If other work runs on the machine, the CPU time of
+// all threads between two checks is more reliable than the elapsed time.
 
 #include "Meshes.h"
 #include "ProcessTime.h"

@@ -30,6 +30,15 @@ SparseMatrix HeatMatrix(const Assembler& assembler, double timeStep)
   return matrix;
 }
 
+/// The largest over the columns, as SolveReport::Residual.
+double ResidualOf(const SparseMatrix& matrix, const Values& b, const Values& x)
+{
+  const Vector scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  const Values left = scale.asDiagonal() * (b - matrix * x);
+  const Values whole = scale.asDiagonal() * b;
+  return (left.colwise().norm().array() / whole.colwise().norm().array()).maxCoeff();
+}
+
 SolverTask ManySolves()
 {
   SolverTask task;
@@ -324,8 +333,8 @@ INSTANTIATE_TEST_SUITE_P(LinearSolver, IterativeSolver,
     Kind{ "Multigrid", [] { return MakeMultigridSolver(); } }),
   [](const auto& parameter) { return parameter.param.Name; });
 
-/// The residual of the last iterations is known by their recurrence alone where round-off cannot have
-/// moved it.
+/// The residual of the last iterations is known by their recurrence alone where round-off cannot
+/// have moved it.
 TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidual)
 {
   const Surface blown = Joined(Icosphere(3), Moved(Scaled(Icosphere(3), 1e-3), { 5.0, 0.0, 0.0 }));
@@ -347,7 +356,6 @@ TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidual)
           assembler->Constrain(
             matrix, Noise(assembler->Mesh(), 1, 3).col(0).array() > 0.5, Values::Zero(n, 1), load);
         }
-        const Vector scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
         for (const double tolerance : { 1e-2, 1e-4, 1e-7, 1e-10 })
         {
           const std::unique_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
@@ -358,12 +366,8 @@ TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidual)
           for (const double factor : { 1.0, 1.001 })
           {
             const SolveReport report = solver->Solve(factor * b, x);
-            const Values left = scale.asDiagonal() * (factor * b - matrix * x);
-            const Values whole = scale.asDiagonal() * (factor * b);
-            const double residual =
-              (left.colwise().norm().array() / whole.colwise().norm().array()).maxCoeff();
             EXPECT_LE(report.Residual, 2.1 * tolerance); // of iterations in double precision
-            EXPECT_LE(residual, 1.0001 * report.Residual + 1e-14)
+            EXPECT_LE(ResidualOf(matrix, factor * b, x), 1.0001 * report.Residual + 1e-14)
               << s << " " << isHeld << " " << diffusionNumber << " " << tolerance;
           }
         }
@@ -372,22 +376,8 @@ TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidual)
   }
 }
 
-namespace
-{
-
-/// The largest over the columns, as SolveReport::Residual.
-double ResidualOf(const SparseMatrix& matrix, const Values& b, const Values& x)
-{
-  const Vector scale = matrix.diagonal().cwiseSqrt().cwiseInverse();
-  const Values left = scale.asDiagonal() * (b - matrix * x);
-  const Values whole = scale.asDiagonal() * b;
-  return (left.colwise().norm().array() / whole.colwise().norm().array()).maxCoeff();
-}
-
-} // namespace
-
-/// Signs of line fields turn entries around, so that rows have large sums and the smallest eigenvalue
-/// is as small as without them.
+/// Signs of line fields turn entries around, so that rows have large sums and the smallest
+/// eigenvalue is as small as without them.
 TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidualWithSigns)
 {
   const auto assembler = MakeAssembler(Icosphere(4));
@@ -421,8 +411,48 @@ TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidualWithSigns)
   }
 }
 
-/// A long step leaves the first column to double precision, while single precision is enough for the
-/// second one.
+/// Where the obtuse corners of flat rhombi are held, the sums of the rows are large, and the
+/// smallest eigenvalue is small.
+TEST(ConjugateGradient, ReportsNoLessThanTheTrueResidualAtHeldObtuseCorners)
+{
+  constexpr Index count = 500;
+  for (const double height : { 0.1, 0.01, 0.001 })
+  {
+    Surface rhombi;
+    rhombi.Vertices.resize(4 * count, 3);
+    rhombi.Faces.resize(2 * count, 3);
+    for (Index r = 0; r < count; ++r)
+    {
+      const double x = 3.0 * r;
+      rhombi.Vertices.middleRows(4 * r, 4) << x - 1.0, 0.0, 0.0, x + 1.0, 0.0, 0.0, x, height, 0.0,
+        x, -height, 0.0;
+      rhombi.Faces.middleRows(2 * r, 2) << 4 * r, 4 * r + 1, 4 * r + 2, 4 * r + 1, 4 * r, 4 * r + 3;
+    }
+    const auto assembler = MakeAssembler(rhombi);
+    const TriangleMesh& mesh = assembler->Mesh();
+    Flags held(mesh.NumberOfVertices());
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      held[i] = mesh.InputVertex()[i] % 4 >= 2;
+    }
+    SparseMatrix matrix = HeatMatrix(*assembler, 1.0);
+    Values load(mesh.NumberOfVertices(), 1);
+    assembler->Constrain(matrix, held, Values::Zero(mesh.NumberOfVertices(), 1), load);
+    for (const double tolerance : { 1e-2, 1e-3, 1e-4 })
+    {
+      const std::unique_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
+      solver->SetLimits({ tolerance, 5000 });
+      solver->SetMatrix(matrix);
+      const Values b = Noise(mesh);
+      Values x = Values::Zero(b.rows(), 1);
+      const SolveReport report = solver->Solve(b, x);
+      EXPECT_LE(ResidualOf(matrix, b, x), 1.0001 * report.Residual) << height << " " << tolerance;
+    }
+  }
+}
+
+/// A long step leaves the first column to double precision, while single precision is enough for
+/// the second one.
 TEST(ConjugateGradient, SolvesAColumnFarFromItsSolutionBesideANearOne)
 {
   const auto assembler = MakeAssembler(Icosphere(4));

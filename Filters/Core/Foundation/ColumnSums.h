@@ -110,8 +110,8 @@ public:
   }
 
   double operator[](std::size_t sum) const { return this->Total[sum]; }
-  /// For a place where add() keeps the largest of numbers >= 0 in place of their sum, whose total then
-  /// has no meaning: the largest of all rows of this process.
+  /// For a place where add() keeps the largest of numbers >= 0 in place of their sum, whose total
+  /// then has no meaning: the largest of all rows of this process.
   double Largest(std::size_t sum) const
   {
     double largest = 0.0;

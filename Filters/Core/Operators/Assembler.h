@@ -30,8 +30,8 @@ public:
   const TriangleMesh& Mesh() const { return *this->SurfaceMesh; }
   std::shared_ptr<const TriangleMesh> SharedMesh() const { return this->SurfaceMesh; }
 
-  /// In each row a vertex and its neighbours. It is made anew in each call: kept beside the matrix
-  /// it would be its columns once more, 28 bytes per vertex.
+  /// In each row, a vertex and its neighbours. Every call computes the pattern, because storing it
+  /// would duplicate the column indices of the matrices, 28 bytes per vertex.
   SparsePattern Pattern(const ParallelFor& parallel = SerialFor()) const;
   /// Give `matrix` the pattern and leave its values to be filled in.
   void TakePattern(SparseMatrix& matrix, const ParallelFor& parallel) const;

@@ -117,8 +117,8 @@ public:
   }
 
 private:
-  /// InverseDiagonal, the sums of the rows and of the diagonal, and the largest ratio of an entry of
-  /// the diagonal to what it exceeds the others of its row by, in one pass over the matrix.
+  /// InverseDiagonal, the sums of the rows and of the diagonal, and the largest ratio of an entry
+  /// of the diagonal to what it exceeds the others of its row by, in one pass over the matrix.
   void InvertDiagonal(const SparseMatrix& matrix)
   {
     const Index n = static_cast<Index>(matrix.rows());

@@ -104,8 +104,8 @@ std::unique_ptr<LinearSolver> MakeCholeskySolver(const ParallelFor& parallel = S
 /// Conjugate gradients with the preconditioner StrongLines, all columns in one pass over the
 /// matrix, each with its own step lengths. The paper's PBCG is this method for symmetric matrices
 /// (Appendix). Unless the matrix is stiff, the iterations are in single precision and measure their
-/// residuals in double precision (SinglePrecisionSolver), but for a last one that round-off cannot have
-/// moved, to the same tolerance.
+/// residuals in double precision (SinglePrecisionSolver), but for a last one that round-off cannot
+/// have moved, to the same tolerance.
 std::unique_ptr<LinearSolver> MakeConjugateGradientSolver(
   const ParallelFor& parallel = SerialFor());
 

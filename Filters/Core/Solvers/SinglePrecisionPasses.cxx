@@ -12,8 +12,8 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// Below, rounding to single precision costs more iterations than their speed gains, unless one pass
-/// reaches the tolerance.
+/// Below, rounding to single precision costs more iterations than their speed gains, unless one
+/// pass reaches the tolerance.
 constexpr double SmallestShare = 7e-4;
 constexpr double SmallestShareOfOnePass = 1e-4;
 constexpr double MostOfOnePass = 1e-5;
@@ -70,11 +70,12 @@ double SinglePrecisionPasses::Plan(
   return passes;
 }
 
-/// After k iterations the residual b - A y of what a pass adds, y, differs from that of the recurrence
-/// by about k epsilon |A| |y| (A. Greenbaum, SIAM J. Matrix Anal. Appl. 18, 1997). With unit
-/// diagonal the eigenvalues of A are between LeastShare and 2 - LeastShare, so that |y| is at most about
-/// |r| / LeastShare. The factor leaves room for the length of the rows and for a pass that goes on along
-/// the last direction.
+/// The number of iterations up to which round-off stays within what the pass allows for it. After k
+/// iterations the residual b - A y of what a pass adds, y, differs from that of the recurrence by
+/// about k epsilon |A| |y| (A. Greenbaum, SIAM J. Matrix Anal. Appl. 18, 1997). With unit diagonal
+/// the eigenvalues of A are between s = LeastShare and 2 - s, so that |y| is at most about |r|/s.
+/// The factor leaves room for the length of the rows and for a pass that goes on
+/// along the last direction.
 double SinglePrecisionPasses::ResolvedIterations() const
 {
   constexpr double perIteration = 8.0 * std::numeric_limits<float>::epsilon();

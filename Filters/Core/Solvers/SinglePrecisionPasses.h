@@ -15,10 +15,10 @@ namespace SurfaceDiffusion
 class SinglePrecisionPasses
 {
 public:
-  /// share: of the sums of the rows in the diagonal, without entries along lines. (1 + lambda dt) M +
-  /// dt K has the row sums of its first term, so that this measures the condition: 7e-4 is the
-  /// diffusion number 300. leastShare: the least over the rows of (a_ii - sum of the other |a_ij|) /
-  /// a_ii, which no eigenvalue of D^-1 A is below (Gershgorin), or 0 if it is not known.
+  /// share: of the sums of the rows in the diagonal, without entries along lines. (1 + lambda dt) M
+  /// + dt K has the row sums of its first term, so that this measures the condition: 7e-4 is the
+  /// diffusion number 300. leastShare: the least over the rows of (a_ii - sum of the other |a_ij|)
+  /// / a_ii, which no eigenvalue of D^-1 A is below (Gershgorin), or 0 if it is not known.
   void SetShares(double share, double leastShare)
   {
     this->Share = share;
@@ -34,17 +34,15 @@ public:
   /// reference are in `measured`. Returns the largest number of passes that are left, or 0.
   double Plan(const ConjugateGradientWork& measured, double tolerance, SolveReport& report);
 
-  /// The iterations of the last pass planned for which round-off leaves their recurrence the residual
-  /// up to the share of the tolerance that the pass allows for it.
-  double ResolvedIterations() const;
-
-  /// After a last pass of `iterations`: whether it has brought every column within the tolerance, as
-  /// the recurrence and that allowance show. Then the residual in the report is a bound.
+  /// After a last pass of `iterations`: whether it has brought every column within the tolerance,
+  /// as the recurrence and that allowance show. Then the residual in the report is a bound.
   bool HaveReachedGoals(int iterations, double tolerance, SolveReport& report) const;
 
   std::vector<SinglePrecisionSolver::Column> Columns;
 
 private:
+  double ResolvedIterations() const;
+
   double Share = 0.0, LeastShare = 0.0;
 };
 
