@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IntrinsicTVTest.h"
 
-
 #include <gtest/gtest.h>
 
 #include <iostream>

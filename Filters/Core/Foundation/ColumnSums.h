@@ -110,17 +110,6 @@ public:
   }
 
   double operator[](std::size_t sum) const { return this->Total[sum]; }
-  /// For a place where add() keeps the largest of numbers >= 0 in place of their sum, whose total
-  /// then has no meaning: the largest of all rows of this process.
-  double Largest(std::size_t sum) const
-  {
-    double largest = 0.0;
-    for (std::size_t place = sum; place < this->Partial.size(); place += this->Total.size())
-    {
-      largest = std::max(largest, this->Partial[place]);
-    }
-    return largest;
-  }
   const std::vector<double>& Totals() const { return this->Total; }
 
 private:

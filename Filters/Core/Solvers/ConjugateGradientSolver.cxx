@@ -3,9 +3,9 @@
 #include "Core/Solvers/ConjugateGradients.h"
 
 #include "Core/Foundation/Resize.h"
-#include "Core/Operators/Assembler.h"
-#include "Core/Operators/SparsePattern.h"
+#include "Core/Solvers/MatrixDiagonal.h"
 #include "Core/Solvers/Multigrid.h"
+#include "Core/Solvers/ScaledResidual.h"
 #include "Core/Solvers/SinglePrecisionPasses.h"
 #include "Core/Solvers/SinglePrecisionSolver.h"
 
@@ -13,7 +13,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 
 namespace SurfaceDiffusion
 {
@@ -52,37 +51,36 @@ public:
     , KeptProcesses(std::move(overProcesses))
     , OverProcesses(*this->KeptProcesses)
     , Hierarchy(std::move(hierarchy))
+    , Diagonal(parallel, this->OverProcesses)
     , Lines(parallel)
     , Single(parallel, this->OverProcesses)
+    , Residual(this->Diagonal, parallel, this->OverProcesses)
   {
   }
 
   void SetMatrix(const SparseMatrix& matrix, const ProgressMonitor& progress) override
   {
     this->Matrix = &matrix;
-    const Index n = static_cast<Index>(matrix.rows());
-    this->InverseDiagonal.resize(n);
     if (this->Hierarchy)
     {
-      ForEach(
-        this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = DiagonalEntry(matrix, i); });
-      this->TakeInverse();
+      this->Diagonal.Invert(matrix);
       this->Hierarchy->SetMatrix(matrix, progress);
     }
     else
     {
-      this->InvertDiagonal(matrix);
-      this->Lines.Set(matrix, this->InverseDiagonal, this->OverProcesses);
+      this->Diagonal.InvertAndMeasure(matrix);
+      const Vector& inverse = this->Diagonal.Inverse();
+      this->Lines.Set(matrix, inverse, this->OverProcesses);
       const double alongLines = this->OverProcesses.Sum(
         Sum(this->Parallel, static_cast<Index>(this->Lines.Vertices().size()),
-          [&](Index k)
-          { return this->Lines.Share(k) / this->InverseDiagonal[this->Lines.Vertices()[k]]; }));
-      this->Passes.SetShares(this->RowSums[0] / (this->RowSums[1] - alongLines),
-        this->OverProcesses.IsSerial() ? 1.0 / this->RowSums.Largest(2) : 0.0);
+          [&](Index k) { return this->Lines.Share(k) / inverse[this->Lines.Vertices()[k]]; }));
+      this->Passes.SetShares(
+        this->Diagonal.SumOfRows() / (this->Diagonal.SumOfDiagonal() - alongLines),
+        this->Diagonal.LeastExcess());
     }
     if (this->Passes.MayHelp())
     {
-      this->Single.SetMatrix(matrix, this->InverseDiagonal, this->Lines);
+      this->Single.SetMatrix(matrix, this->Diagonal.Inverse(), this->Lines);
     }
     progress.Report(1.0);
   }
@@ -99,7 +97,7 @@ public:
     Resize(z, r.rows(), r.cols());
     if (!this->Hierarchy)
     {
-      this->Lines.Precondition(this->InverseDiagonal, r, z);
+      this->Lines.Precondition(this->Diagonal.Inverse(), r, z);
       return;
     }
     std::vector<double> squares(r.cols());
@@ -107,7 +105,7 @@ public:
       this->Parallel, n, r.cols(),
       [&](Index i, Eigen::Index c)
       {
-        const double square = r(i, c) * this->InverseDiagonal[i] * r(i, c);
+        const double square = r(i, c) * this->Diagonal.Inverse()[i] * r(i, c);
         return this->OverProcesses.Owns(i) ? square : 0.0;
       },
       squares.data());
@@ -117,50 +115,9 @@ public:
   }
 
 private:
-  /// InverseDiagonal, the sums of the rows and of the diagonal, and the largest ratio of an entry
-  /// of the diagonal to what it exceeds the others of its row by, in one pass over the matrix.
-  void InvertDiagonal(const SparseMatrix& matrix)
-  {
-    const Index n = static_cast<Index>(matrix.rows());
-    const Index* const outer = matrix.outerIndexPtr();
-    const Index* const inner = matrix.innerIndexPtr();
-    const double* const values = matrix.valuePtr();
-    this->RowSums.Resize(n, 3);
-    this->RowSums.Run<3>(this->Parallel, n, 3,
-      [&](Index i, double* sums)
-      {
-        double sum = 0.0; // of a row first: large entries cancel
-        double absolute = 0.0;
-        Index below = 0; // entries before the diagonal, see DiagonalEntry()
-        for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
-        {
-          sum += values[slot];
-          absolute += std::abs(values[slot]);
-          below += inner[slot] < i;
-        }
-        const double diagonal = values[outer[i] + below];
-        this->InverseDiagonal[i] = diagonal;
-        sums[0] += sum;
-        sums[1] += diagonal;
-        const double excess = 2.0 * diagonal - absolute;
-        sums[2] = std::max(
-          sums[2], excess > 0.0 ? diagonal / excess : std::numeric_limits<double>::infinity());
-      });
-    this->RowSums.Reduce(this->OverProcesses);
-    this->TakeInverse();
-  }
-
-  /// InverseDiagonal, from the diagonal of the process.
-  void TakeInverse()
-  {
-    this->OverProcesses.Accumulate(this->InverseDiagonal);
-    ForEach(this->Parallel, static_cast<Index>(this->InverseDiagonal.size()),
-      [&](Index i) { this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i]; });
-  }
-
   ColumnSystem System()
   {
-    return { { *this->Matrix, this->InverseDiagonal, this->Lines, this->Parallel,
+    return { { *this->Matrix, this->Diagonal.Inverse(), this->Lines, this->Parallel,
                this->OverProcesses },
       this->Hierarchy.get(), this->Scales };
   }
@@ -169,58 +126,8 @@ private:
   SolveReport SolveColumns(const Values& accumulatedB, Values& x, const ProgressMonitor& progress)
   {
     const Values& b = this->OverProcesses.Accumulated(accumulatedB, this->ConsistentB);
-    const ColumnCount<K> k(b.cols());
-    const Index n = static_cast<Index>(b.rows());
-    if (this->Residual.cols() != k)
-    {
-      std::swap(this->Residual, this->OtherResidual);
-      std::swap(this->Work, this->OtherWork);
-    }
-    Resize(this->Residual, n, k);
-    this->Scales.resize(k);
-    this->Work.ResizeSums(n, k);
-
-    // b - A x in units of each column's own
-    double startsElsewhere = Max(this->Parallel, n,
-      [&](Index i)
-      {
-        bool isZero = true;
-        for (int c = 0; c < k; ++c)
-        {
-          isZero = isZero && x(i, c) == 0.0;
-        }
-        return isZero ? 0.0 : 1.0;
-      });
-    this->OverProcesses.Max(&startsElsewhere, 1);
-    if (startsElsewhere > 0.0)
-    {
-      this->MultiplyByMatrix(x);
-    }
-    else
-    {
-      this->Residual.setZero();
-    }
-    std::vector<double>& unit = this->Work.Unit;
-    for (int c = 0; c < k; ++c)
-    {
-      unit[c] = ScaleOf(b, this->Residual, c, this->Parallel, this->OverProcesses);
-    }
-    this->Work.Sums.Run<K>(this->Parallel, n, k,
-      [&](Index i, double* sums)
-      {
-        const bool counts = this->OverProcesses.Owns(i);
-        for (int c = 0; c < k; ++c)
-        {
-          const double bi = b(i, c) / unit[c];
-          sums[c] += counts ? bi * this->InverseDiagonal[i] * bi : 0.0;
-        }
-      });
-    this->Work.Sums.Reduce(this->OverProcesses);
-    for (int c = 0; c < k; ++c)
-    {
-      this->Work.Reference[c] = this->Work.Sums[c] > 0.0 ? this->Work.Sums[c] : 1.0;
-    }
-    this->SubtractProduct<K>(b);
+    this->Scales.resize(b.cols());
+    this->Residual.Start<K>(*this->Matrix, b, x);
     SolveReport report;
     report.Converged = false;
     this->HasStoppedEarly = false;
@@ -254,13 +161,13 @@ private:
       const double forecast = report.Forecast;
       IterationLimits limits = this->Limits;
       limits.MaximumNumberOfIterations -= before;
-      report =
-        ConjugateGradients<K, ColumnSystem>(system, this->Residual, this->Work, this->Parallel)
-          .Solve(x, limits, progress.Part(std::isinf(last) ? 0.0 : 1.0, 1.0));
+      report = ConjugateGradients<K, ColumnSystem>(
+        system, this->Residual.Entries, this->Residual.Work, this->Parallel)
+                 .Solve(x, limits, progress.Part(std::isinf(last) ? 0.0 : 1.0, 1.0));
       report.Iterations += before;
       report.Forecast = std::max(forecast, before + report.Forecast);
-      this->UpdateResidual<K>(b, x);
-      report.Residual = this->LargestResidual();
+      this->Residual.Update<K>(*this->Matrix, b, x);
+      report.Residual = this->Residual.Largest();
       const bool hasDrifted = !(report.Residual <= drifted * this->Limits.Tolerance);
       if (!report.Converged || !hasDrifted)
       {
@@ -275,23 +182,6 @@ private:
     }
   }
 
-  /// Of the columns whose residuals have been measured. Throws std::runtime_error if it is not
-  /// finite.
-  double LargestResidual() const
-  {
-    double largest = 0.0;
-    for (std::size_t c = 0; c < this->Work.Reference.size(); ++c)
-    {
-      const double residual = std::sqrt(this->Work.Sums[c] / this->Work.Reference[c]);
-      if (!std::isfinite(residual))
-      {
-        throw std::runtime_error("the linear system has no finite solution");
-      }
-      largest = std::max(largest, residual);
-    }
-    return largest;
-  }
-
   /// Iterations in single precision with residuals in double precision, except a last one that
   /// round-off cannot have moved, until all columns are within the tolerance or can come no closer.
   template <int K>
@@ -301,13 +191,13 @@ private:
     std::optional<ConvergenceForecast> forecast;
     const ColumnCount<K> k(b.cols());
     this->Passes.Start(k);
-    Values& before = this->Work.P; // iterations in double precision begin with a new one
+    Values& before = this->Residual.Work.P; // iterations in double precision begin with a new one
     Resize(before, x.rows(), x.cols());
     SolveReport report;
     double done = 0.0;
     while (true)
     {
-      const double passes = this->Passes.Plan(this->Work, this->Limits.Tolerance, report);
+      const double passes = this->Passes.Plan(this->Residual.Work, this->Limits.Tolerance, report);
       const int left = this->Limits.MaximumNumberOfIterations - report.Iterations;
       if (!forecast)
       {
@@ -328,7 +218,7 @@ private:
           std::copy_n(from, static_cast<std::ptrdiff_t>(last - first) * k, to);
         });
       forecast->StartPass(report.Iterations);
-      const int iterations = this->Single.Correct(this->Residual, this->Passes.Columns,
+      const int iterations = this->Single.Correct(this->Residual.Entries, this->Passes.Columns,
         std::min(left, longestPass), x, progress.Part(done, end), &*forecast);
       report.Iterations += iterations;
       done = end;
@@ -338,10 +228,10 @@ private:
         report.Forecast = forecast->Largest();
         return report;
       }
-      this->UpdateResidual<K>(b, x);
+      this->Residual.Update<K>(*this->Matrix, b, x);
       if (this->TakeBackFailures(before, x))
       {
-        this->UpdateResidual<K>(b, x);
+        this->Residual.Update<K>(*this->Matrix, b, x);
       }
     }
   }
@@ -354,7 +244,7 @@ private:
     bool any = false;
     for (std::size_t c = 0; c < this->Passes.Columns.size(); ++c)
     {
-      if (!(std::sqrt(this->Work.Sums[c]) <= this->Passes.Columns[c].Length))
+      if (!(std::sqrt(this->Residual.Work.Sums[c]) <= this->Passes.Columns[c].Length))
       {
         x.col(static_cast<Eigen::Index>(c)) = before.col(static_cast<Eigen::Index>(c));
         any = true;
@@ -363,59 +253,19 @@ private:
     return any;
   }
 
-  /// The residual and its squares in the norm of D^-1, in Work.Sums.
-  template <int K>
-  void UpdateResidual(const Values& b, const Values& x)
-  {
-    this->MultiplyByMatrix(x);
-    this->SubtractProduct<K>(b);
-  }
-
-  /// Residual = A x.
-  void MultiplyByMatrix(const Values& x)
-  {
-    Multiply(*this->Matrix, x, this->Residual, this->Parallel);
-    this->OverProcesses.Accumulate(this->Residual);
-  }
-
-  /// The residual from A x, and its squares.
-  template <int K>
-  void SubtractProduct(const Values& b)
-  {
-    const ColumnCount<K> k(b.cols());
-    const std::vector<double>& unit = this->Work.Unit;
-    this->Work.Sums.Run<K>(this->Parallel, static_cast<Index>(b.rows()), k,
-      [&](Index i, double* sums)
-      {
-        const bool counts = this->OverProcesses.Owns(i);
-        for (int c = 0; c < k; ++c)
-        {
-          const double r = b(i, c) / unit[c] - this->Residual(i, c) / unit[c];
-          this->Residual(i, c) = r;
-          sums[c] += counts ? r * this->InverseDiagonal[i] * r : 0.0;
-        }
-      });
-    this->Work.Sums.Reduce(this->OverProcesses);
-  }
-
   const ParallelFor& Parallel;
   const std::shared_ptr<const Reduction> KeptProcesses;
   const Reduction& OverProcesses;
   std::unique_ptr<Multigrid> Hierarchy;
   const SparseMatrix* Matrix = nullptr;
-  Vector InverseDiagonal;
+  MatrixDiagonal Diagonal;
   StrongLines Lines; ///< without a hierarchy
   SinglePrecisionSolver Single;
   SinglePrecisionPasses Passes;
   bool HasStoppedEarly = false; ///< before iterations in double precision
-  ColumnSums RowSums;
-  Values Residual; ///< in Work.Unit
+  ScaledResidual Residual;
   Values ConsistentB; ///< over several processes
   std::vector<double> Scales;
-  ConjugateGradientWork Work;
-  // Those of another number of columns, for which the solver may be used in turn:
-  Values OtherResidual;
-  ConjugateGradientWork OtherWork;
 };
 
 } // namespace

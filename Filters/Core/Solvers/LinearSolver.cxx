@@ -38,8 +38,8 @@ void RequireAnswer(const SolveReport& report, const IterationLimits& limits)
   }
 }
 
-double LinearSolver::ScaleOf(const Values& a, const Values& b, Eigen::Index column,
-  const ParallelFor& parallel, const Reduction& overProcesses)
+double ScaleOf(const Values& a, const Values& b, Eigen::Index column, const ParallelFor& parallel,
+  const Reduction& overProcesses)
 {
   double largest = Max(parallel, static_cast<Index>(a.rows()),
     [&](Index i) { return std::max(std::abs(a(i, column)), std::abs(b(i, column))); });

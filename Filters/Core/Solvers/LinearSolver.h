@@ -56,6 +56,11 @@ constexpr double AnswerFactor = 10.0;
 /// report is final.
 void RequireAnswer(const SolveReport& report, const IterationLimits& limits);
 
+/// A power of two near the largest entry of two columns. The squares of entries divided by it
+/// neither overflow nor underflow, and the division is exact.
+double ScaleOf(const Values& a, const Values& b, Eigen::Index column, const ParallelFor& parallel,
+  const Reduction& overProcesses = Reduction::Serial());
+
 /// Solves A x = b for symmetric positive definite matrices of one pattern. After a solve that
 /// failed it gives the same results as a new one.
 class LinearSolver
@@ -88,11 +93,6 @@ public:
   virtual long NumberOfFactorizations() const { return 0; }
 
 protected:
-  /// A power of two near the largest entry of two columns. The squares of entries divided by it
-  /// neither overflow nor underflow, and the division is exact.
-  static double ScaleOf(const Values& a, const Values& b, Eigen::Index column,
-    const ParallelFor& parallel, const Reduction& overProcesses = Reduction::Serial());
-
   IterationLimits Limits;
 };
 

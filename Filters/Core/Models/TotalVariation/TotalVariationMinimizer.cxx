@@ -3,13 +3,13 @@
 #include "Core/Models/TotalVariation/TotalVariationMinimizer.h"
 
 #include "Core/Foundation/Resize.h"
+#include "Core/Models/TotalVariation/PenaltyPace.h"
+#include "Core/Models/TotalVariation/PenaltyRanges.h"
 #include "Core/Models/TotalVariation/VertexSplitting.h"
 #include "Core/Operators/SparsePattern.h"
-#include "Core/Statistics/ValueRange.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -27,11 +27,10 @@ constexpr double SmallestSingleGap = 1e-5;
 constexpr double SmallestSingleGapOfSplit = 1e-4;
 
 /// Conjugate gradient iterations on the quadratic problem. Without a growing penalty few of them
-/// are best: exact solutions circle around the minimum. With one, Pace says how exact they are to
-/// be; at most 20 are too few for that on large surfaces with weak fidelity.
+/// are best: exact solutions circle around the minimum. With one, PenaltyPace says how exact they
+/// are to be; at most 20 are too few for that on large surfaces with weak fidelity.
 constexpr int InnerIterations = 4;
 constexpr int MostInnerIterations = 60;
-constexpr int IterationsPerCheck = 10;
 /// Many runs to a gap of 1e-3 end between the first two checks: there it is measured once more.
 constexpr int EarlyMeasurement = 15;
 
@@ -39,78 +38,6 @@ constexpr int EarlyMeasurement = 15;
 /// of an accelerated method is fastest near 1/3.
 constexpr double GrowthFactor = 0.35;
 constexpr double SquaredEdgeOverHeight = 4.0 / 3.0; ///< of equilateral triangles
-
-/// The first penalty of an energy with mu > 0, which then grows, is best a sixth of that which
-/// stays: measured on steps and steady states of caps and patterns with and without noise.
-constexpr double StartOfGrowth = 6.0;
-
-/// How exactly the quadratic problem is solved and by how much the penalty has grown. A
-/// method whose penalty grows diverges if its errors grow with it, and slows down if the penalty
-/// grows faster than it converges: when the gap has not fallen, errors become smaller and the
-/// penalty stays, and falls in the end.
-struct Pace
-{
-  static constexpr double LeastReduction = 0.02;
-  static constexpr double MostGrowth = 4.0; ///< at a time
-  static constexpr int MostChecks = 3; ///< without a smaller gap
-
-  double Reduction = 0.1; ///< of the residual of the quadratic problem, with a growing penalty
-  double Growth = 1.0; ///< of the penalty
-  double Smallest = std::numeric_limits<double>::infinity(); ///< gap
-  int ChecksSinceSmallest = 0;
-
-  /// rate: of the growth per iteration
-  void Take(double gap, double rate)
-  {
-    if (gap < this->Smallest)
-    {
-      this->Smallest = gap;
-      this->ChecksSinceSmallest = 0;
-      this->Growth = std::min(this->Growth + rate * IterationsPerCheck, MostGrowth * this->Growth);
-      return;
-    }
-    ++this->ChecksSinceSmallest;
-    this->Reduction = std::max(LeastReduction, 0.5 * this->Reduction);
-    if (this->ChecksSinceSmallest % MostChecks == 0 && gap > 2.0 * this->Smallest)
-    {
-      this->Growth = std::max(1.0, 0.5 * this->Growth);
-    }
-  }
-};
-
-/// The typical range of u on each triangle: that on the whole surface, except at outliers.
-Vector RangesOfTriangles(const TriangleMesh& mesh, const Eigen::Ref<const Values>& u,
-  const Values& quadratic, const ParallelFor& parallel)
-{
-  const Reduction& reduction = mesh.GetReduction();
-  const bool grows = reduction.Any((quadratic.array() > 0.0).any());
-  const double typical = (grows ? StartOfGrowth : 1.0) * TypicalRange(u, reduction);
-  Vector ranges(mesh.NumberOfTriangles());
-  ForEach(parallel, mesh.NumberOfTriangles(),
-    [&](Index t) { ranges[t] = std::max(typical, RangeOnTriangle(mesh, u, t)); });
-  return ranges;
-}
-
-/// Their means around each vertex.
-Vector RangesOfVertices(
-  const TriangleMesh& mesh, const Vector& ofTriangles, const ParallelFor& parallel)
-{
-  Vector storage;
-  const Vector& areas = mesh.GetReduction().Accumulated(mesh.ControlAreas(), storage);
-  Vector ranges(mesh.NumberOfVertices());
-  ForEach(parallel, mesh.NumberOfVertices(),
-    [&](Index i)
-    {
-      ranges[i] = 0.0;
-      for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
-      {
-        const Index t = mesh.VertexCorners()[c] / 3;
-        ranges[i] += mesh.Shapes()[t].Area() / 3.0 * ofTriangles[t];
-      }
-    });
-  mesh.GetReduction().Accumulate(ranges);
-  return ranges.cwiseQuotient(areas);
-}
 
 EdgeFunction WithoutBeta(EdgeFunction function)
 {
@@ -197,11 +124,11 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   const double negligible = std::max(1e-3 * startEnergy, 1e-6 * this->NoiseEnergy());
   const bool grows = this->GrowthRate > 0.0;
   Report report;
-  Pace pace;
+  PenaltyPace pace;
   double fraction = 0.0;
   while (true)
   {
-    const bool isCheck = report.Iterations % IterationsPerCheck == 0;
+    const bool isCheck = report.Iterations % PenaltyPace::IterationsPerCheck == 0;
     if (isCheck || report.Iterations == EarlyMeasurement)
     {
       this->MeasureGap(u, negligible, report);
@@ -230,7 +157,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
       {
         pace.Take(report.AbsoluteGap, this->GrowthRate);
       }
-      if (isSingle && pace.ChecksSinceSmallest == Pace::MostChecks)
+      if (isSingle && pace.ChecksSinceSmallest == PenaltyPace::MostChecks)
       {
         isSingle = false;
         this->Start(u, true, false);

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Parallel.h"
+#include "Core/Foundation/Types.h"
+#include "Core/Surface/TriangleMesh.h"
+
+namespace SurfaceDiffusion
+{
+
+// The ranges of values that TotalVariationMinimizer derives its first penalties from.
+
+/// Of u on each triangle: that on the whole surface, except at outliers. quadratic: the weights of
+/// the fidelity, of which one above 0 lets the penalty grow.
+Vector RangesOfTriangles(const TriangleMesh& mesh, const Eigen::Ref<const Values>& u,
+  const Values& quadratic, const ParallelFor& parallel);
+
+/// Their means around each vertex.
+Vector RangesOfVertices(
+  const TriangleMesh& mesh, const Vector& ofTriangles, const ParallelFor& parallel);
+
+} // namespace SurfaceDiffusion
