@@ -59,9 +59,9 @@ void WarnOfValues(
   }
   if (known.Outside > 0)
   {
-    result.WarnOnce(Sentence() << known.Outside
-                               << (known.Outside == 1 ? " value is" : " values are")
-                               << " where nothing is computed, outside of the mask, and left out");
+    result.WarnOnce(
+      Sentence() << known.Outside << (known.Outside == 1 ? " value is" : " values are") << " where "
+                 << Word::Array("MaskArray") << " excludes the surface, and left out");
   }
   const Values& given = known.Values.Given;
   if (given.rows() > 1 && (given.rowwise() - given.row(0)).isZero(0.0))

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkCellData.h"
 #include "vtkCylinderSource.h"
 #include "vtkFVMHeatFilter.h"
@@ -69,6 +70,14 @@ std::string ErrorOf(vtkSurfaceDirectionFieldFilter* filter)
   return messages.Errors.empty() ? std::string() : messages.Errors.front();
 }
 
+std::string WarningOf(vtkSurfaceDirectionFieldFilter* filter)
+{
+  const Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Errors.empty());
+  return messages.Warnings.empty() ? std::string() : messages.Warnings.front();
+}
+
 const double X[3] = { 1.0, 0.0, 0.0 };
 const double Z[3] = { 0.0, 0.0, 1.0 };
 
@@ -132,8 +141,43 @@ TEST(DirectionFieldFilter, HintsOnCellsSpreadOverTheSurface)
   filter->SetMethodToHints();
   EXPECT_NE(ErrorOf(filter).find("DirectionArray is not set"), std::string::npos);
   SetInputArray(filter, 2, "hints", true);
-  filter->Update();
+  EXPECT_EQ(WarningOf(filter), "");
   ExpectAlong(Direction(filter), X, 1e-9);
+}
+
+TEST(DirectionFieldFilter, SaysWhereNoHintReaches)
+{
+  const auto other = Grid(5, 4);
+  for (vtkIdType i = 0; i < other->GetNumberOfPoints(); ++i)
+  {
+    const double* const x = other->GetPoint(i);
+    other->GetPoints()->SetPoint(i, 100.0 + x[0], x[1], x[2]);
+  }
+  other->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "hints", other->GetNumberOfCells(), 3,
+    [](vtkIdType, int) { return std::nan(""); }));
+  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
+  filter->SetInputData(other);
+  filter->SetMethodToHints();
+  SetInputArray(filter, 2, "hints", true);
+  EXPECT_NE(WarningOf(filter).find(
+              "DirectionArray has no direction along the surface anywhere, so the field is 0"),
+    std::string::npos);
+
+  const auto grid = Grid(12, 9);
+  grid->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "hints", grid->GetNumberOfCells(), 3,
+    [](vtkIdType c, int k) { return c == 3 && k == 0 ? 1.0 : 0.0; }));
+  vtkNew<vtkAppendPolyData> both;
+  both->AddInputData(grid);
+  both->AddInputData(other);
+  filter->SetInputConnection(both->GetOutputPort());
+  EXPECT_NE(WarningOf(filter).find("DirectionArray has no direction along the surface on connected "
+                                   "components of together 24 triangles; the field is 0 there"),
+    std::string::npos);
+  for (vtkIdType c = 0; c < Direction(filter)->GetNumberOfTuples(); ++c)
+  {
+    EXPECT_NEAR(std::abs(Direction(filter)->GetComponent(c, 0)),
+      c < grid->GetNumberOfCells() ? 1.0 : 0.0, 1e-9);
+  }
 }
 
 TEST(DirectionFieldFilter, PolygonsAndStripsGetOneDirectionEach)

@@ -373,7 +373,7 @@ TEST(InterpolationFilter, IsNaNWhereNothingIsKnown)
   filter->SetInputDataObject(sphere);
   SetInputArray(filter, 1, "south");
   filter->SetMaskModeToExclude();
-  EXPECT_NE(WarningOf(filter).find("10 values are where nothing is computed, outside of the mask"),
+  EXPECT_NE(WarningOf(filter).find("10 values are where MaskArray excludes the surface"),
     std::string::npos);
   EXPECT_EQ(filter->GetNumberOfValues(), 10);
   for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)

@@ -206,8 +206,7 @@ class BadValues(unittest.TestCase):
         south = BALL.points[:, 2] < 0.0
         result, found = interpolate(BALL, field(places_around(20)), places_around(20), exact=True,
                                     mask=south, mask_mode="Exclude")
-        self.assertEqual(found, ["10 values are where nothing is computed, outside of the mask, and left "
-                                 "out"])
+        self.assertEqual(found, ["10 values are where mask excludes the surface, and left out"])
         self.assertEqual(result.number_of_values, 10)
         np.testing.assert_array_equal(np.isnan(result.values), south)
         of_region, _ = interpolate(BALL, field(places_around(20)), places_around(20), exact=True,
