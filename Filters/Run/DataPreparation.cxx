@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -26,10 +27,11 @@ double EstimateBetweenNeighbours(const ModelInputs& inputs, const PointData& dat
 }
 
 /// The estimate of noise between neighbours is that of white noise. A warning if there is none.
-void WarnOfSmoothData(const ModelInputs& inputs, double estimate, RunResult& result)
+void WarnOfSmoothData(
+  const ModelInputs& inputs, const PointData& data, double estimate, RunResult& result)
 {
   const NeighbourVariation variation = MeasureVariation(
-    *inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data, estimate);
+    *inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data, estimate);
   if (!variation.IsSmooth())
   {
     return;
@@ -47,10 +49,19 @@ void WarnOfSmoothData(const ModelInputs& inputs, double estimate, RunResult& res
 /// Of the first guess of the search for a weight: keeps data to seven digits.
 constexpr double WeightWithoutNoise = 1e8;
 
-/// The measured data that the result has to differ from by the noise.
-PointData WithoutConstantParts(const ModelInputs& inputs)
+/// The data of the fidelity term: values of weight 0 are but a start, and may be anything.
+PointData WithWeight(PointData data)
 {
-  PointData data = inputs.Data;
+  if (data.FidelityFactors.size() > 0)
+  {
+    data.Missing = data.Missing || data.FidelityFactors.array() == 0.0;
+  }
+  return data;
+}
+
+/// The measured data that the result has to differ from by the noise.
+PointData WithoutConstantParts(const ModelInputs& inputs, PointData data)
+{
   const Flags varying = FindVaryingVertices(*inputs.Surface.SharedAssembler(), data);
   if (varying.any())
   {
@@ -187,15 +198,16 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
   const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result, HeatBlur* blur)
 {
   const double unit = inputs.Units.ValueUnit;
+  PointData data = WithWeight(inputs.Data);
   double noise = NoiseAtVertices(inputs, noiseLevel);
   if (inputs.Cells && noiseLevel == 0.0)
   {
-    noise = EstimateBetweenNeighbours(inputs, inputs.Data) * FindCellNoiseGain(inputs);
+    noise = EstimateBetweenNeighbours(inputs, data) * FindCellNoiseGain(inputs);
   }
   else if (noiseLevel == 0.0)
   {
     const NoiseEstimate estimate =
-      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data);
+      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data);
     noise = estimate.Level();
     if (estimate.IsCorrelated())
     {
@@ -206,7 +218,7 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
     }
     else
     {
-      WarnOfSmoothData(inputs, noise, result);
+      WarnOfSmoothData(inputs, data, noise, result);
     }
   }
   if (noise == 0.0)
@@ -217,7 +229,7 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
       << Word::Setting("NoiseLevel") << ")");
     return WeightWithoutNoise * start;
   }
-  const PointData compared = WithoutConstantParts(inputs);
+  const PointData compared = WithoutConstantParts(inputs, std::move(data));
   const auto discrepancy = [&](double fidelity)
   {
     const std::unique_ptr<Model> model = makeModel(fidelity);
