@@ -30,8 +30,8 @@ double EstimateBetweenNeighbours(const ModelInputs& inputs, const PointData& dat
 void WarnOfSmoothData(
   const ModelInputs& inputs, const PointData& data, double estimate, RunResult& result)
 {
-  const NeighbourVariation variation = MeasureVariation(
-    *inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data, estimate);
+  const NeighbourVariation variation =
+    MeasureVariation(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data, estimate);
   if (!variation.IsSmooth())
   {
     return;
