@@ -79,6 +79,10 @@ private:
   void Resize(int columns);
   void SetSlices();
   template <int K>
+  void TakeResiduals(const Values& r, const std::vector<double>& scale);
+  template <int K>
+  void GiveSolutions(const std::vector<double>& scale, Values& z) const;
+  template <int K>
   void Cycle(std::size_t number, int columns);
   template <int K, typename Finish>
   void Subtract(

@@ -3,6 +3,7 @@
 #include "Core/Solvers/Multigrid.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Foundation/Prefetch.h"
 #include "Core/Foundation/Resize.h"
 
 namespace SurfaceDiffusion
@@ -11,27 +12,62 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// sums += sign (column i of `matrix`) . x, K columns of x, or any number of them if K is 0.
-template <int K, typename Matrix, typename Numbers>
-void AddProduct(
-  const Matrix& matrix, Index i, const Numbers& x, int columns, float sign, float* sums)
+/// The K columns of a vertex, or any number of them if K is 0. Eigen's rows of known length are in
+/// vector registers where compilers would not put them.
+template <int K>
+using Row = Eigen::Array<float, K == 0 ? Eigen::Dynamic : K, 1>;
+template <int K>
+using RowMap = Eigen::Map<Row<K>>;
+template <int K>
+using ConstRowMap = Eigen::Map<const Row<K>>;
+
+/// y = b + sign (columns [begin, end) of `matrix`) . x; b may be y, or null for zero. Pointers are
+/// passed by value, so that compilers know that the loop does not change them.
+template <int K, typename Matrix>
+void AddProducts(const Matrix& matrix, Index begin, Index end, float sign, const float* x,
+  const float* b, float* y, ColumnCount<K> k)
 {
-  // Eigen's rows of known length are in vector registers where compilers would not put them.
-  using Row = Eigen::Array<float, K == 0 ? Eigen::Dynamic : K, 1>;
-  const ColumnCount<K> k(columns);
-  const Index* inner = matrix.innerIndexPtr();
-  const float* a = matrix.valuePtr();
-  Eigen::Map<Row> total(sums, k);
-  std::conditional_t<K == 0, Eigen::Map<Row>&, Row> row(total);
-  for (Index slot = matrix.outerIndexPtr()[i]; slot < matrix.outerIndexPtr()[i + 1]; ++slot)
+  const Index* const outer = matrix.outerIndexPtr();
+  const Index* const inner = matrix.innerIndexPtr();
+  const float* const entries = matrix.valuePtr();
+  const Index size = outer[matrix.cols()];
+  for (Index i = begin; i < end; ++i)
   {
-    row += sign * a[slot] *
-      Eigen::Map<const Row>(x.data() + static_cast<std::ptrdiff_t>(inner[slot]) * k, k);
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
+    RowMap<K> row(y + at, k);
+    std::conditional_t<K == 0, RowMap<K>&, Row<K>> sums(row); // in registers
+    if (b)
+    {
+      sums = ConstRowMap<K>(b + at, k);
+    }
+    else
+    {
+      sums.setZero();
+    }
+    PrefetchRow(x, inner, outer[i + 1], size, k);
+    for (Index slot = outer[i]; slot < outer[i + 1]; ++slot)
+    {
+      sums +=
+        sign * entries[slot] * ConstRowMap<K>(x + static_cast<std::ptrdiff_t>(inner[slot]) * k, k);
+    }
+    if constexpr (K > 0)
+    {
+      row = sums;
+    }
   }
-  if constexpr (K > 0)
+}
+
+/// Columns of a cycle that fill vector registers, beside those of ForColumns().
+constexpr int SmallPanel = 4;
+
+/// The number of columns over which a cycle for k of them runs: one for which it is compiled.
+Eigen::Index PaddedColumns(Eigen::Index k)
+{
+  if (k < 3 || k > ColumnPanel)
   {
-    total = row;
+    return k;
   }
+  return k <= SmallPanel ? SmallPanel : k <= HalfPanel ? HalfPanel : ColumnPanel;
 }
 
 } // namespace
@@ -72,44 +108,70 @@ void Multigrid::SetSlices()
 
 void Multigrid::Apply(const Values& r, const std::vector<double>& scale, Values& z)
 {
-  const int k = static_cast<int>(r.cols());
-  const bool isPadded = k == 3; // four columns fill a vector register
-  this->Resize(isPadded ? 4 : k);
-  if (k == 1 && !this->HasSlices)
+  const Eigen::Index columns = r.cols();
+  const Eigen::Index padded = PaddedColumns(columns);
+  this->Resize(static_cast<int>(padded));
+  if (columns == 1 && !this->HasSlices)
   {
     this->SetSlices();
   }
-  Numbers& b = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().B;
-  ForEach(this->Parallel, static_cast<Index>(r.rows()),
-    [&](Index i)
-    {
-      for (int c = 0; c < k; ++c)
-      {
-        b(i, c) = static_cast<float>(this->Scaling[i] * scale[c] * r(i, c));
-      }
-      if (isPadded)
-      {
-        b(i, 3) = 0.0f;
-      }
-    });
-  if (isPadded)
+  ForColumns(columns, [&](auto k) { this->TakeResiduals<decltype(k)::value>(r, scale); });
+  const auto cycle = [&](auto k) { this->Cycle<decltype(k)::value>(0, static_cast<int>(padded)); };
+  if (padded == SmallPanel)
   {
-    this->Cycle<4>(0, 4);
+    cycle(std::integral_constant<int, SmallPanel>());
   }
   else
   {
-    ForColumns(k, [&](auto columns) { this->Cycle<decltype(columns)::value>(0, k); });
+    ForColumns(padded, cycle);
   }
-  const Numbers& x = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().X;
-  ForEach(this->Parallel, static_cast<Index>(r.rows()),
-    [&](Index i)
+  ForColumns(columns, [&](auto k) { this->GiveSolutions<decltype(k)::value>(scale, z); });
+  this->OverProcesses->UpdateFromOwners(z);
+}
+
+/// The right-hand side of the finest level. Columns beyond those of r are zero.
+template <int K>
+void Multigrid::TakeResiduals(const Values& r, const std::vector<double>& scale)
+{
+  const ColumnCount<K> k(r.cols());
+  Numbers& b = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().B;
+  const auto padded = static_cast<int>(b.cols());
+  ForEachBlock(this->Parallel, static_cast<Index>(r.rows()),
+    [&](Index, Index begin, Index end)
     {
-      for (int c = 0; c < k; ++c)
+      const double* from = &r(begin, 0);
+      float* to = &b(begin, 0);
+      for (Index i = begin; i < end; ++i, from += k, to += padded)
       {
-        z(i, c) = this->Scaling[i] / scale[c] * x(i, c);
+        for (int c = 0; c < k; ++c)
+        {
+          to[c] = static_cast<float>(this->Scaling[i] * scale[c] * from[c]);
+        }
+        std::fill(to + k, to + padded, 0.0F);
       }
     });
-  this->OverProcesses->UpdateFromOwners(z);
+}
+
+/// z from the solution of the finest level.
+template <int K>
+void Multigrid::GiveSolutions(const std::vector<double>& scale, Values& z) const
+{
+  const ColumnCount<K> k(z.cols());
+  const Numbers& x = this->Levels.empty() ? this->CoarsestNumbers : this->Levels.front().X;
+  const auto padded = static_cast<int>(x.cols());
+  ForEachBlock(this->Parallel, static_cast<Index>(z.rows()),
+    [&](Index, Index begin, Index end)
+    {
+      const float* from = &x(begin, 0);
+      double* to = &z(begin, 0);
+      for (Index i = begin; i < end; ++i, from += padded, to += k)
+      {
+        for (int c = 0; c < k; ++c)
+        {
+          to[c] = this->Scaling[i] / scale[c] * from[c];
+        }
+      }
+    });
 }
 
 /// InterfaceNumbers are those of the vertices on interfaces.
@@ -158,7 +220,7 @@ void Multigrid::Subtract(
     return;
   }
   this->SubtractOwnPart<K>(level, from, x, columns,
-    [&](Index i, std::ptrdiff_t at, const float* r)
+    [&](Index i, std::ptrdiff_t at, const auto& r)
     {
       if (!level.IsOnInterface[i])
       {
@@ -168,7 +230,8 @@ void Multigrid::Subtract(
   this->AccumulateInterface(*level.OverProcesses, level.R);
   for (const Index vertex : level.OverProcesses->InterfaceVertices())
   {
-    finish(vertex, static_cast<std::ptrdiff_t>(vertex) * columns, &level.R(vertex, 0));
+    finish(vertex, static_cast<std::ptrdiff_t>(vertex) * columns,
+      ConstRowMap<K>(&level.R(vertex, 0), columns));
   }
 }
 
@@ -195,38 +258,24 @@ template <int K, typename Finish>
 void Multigrid::SubtractRows(
   Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish)
 {
-  if constexpr (K == 1)
-  {
-    ForEachBlock(this->Parallel, static_cast<Index>(level.A.rows()),
-      [&](Index, Index begin, Index end)
-      {
-        float* const r = level.R.data();
-        level.RowsOfA.Subtract(begin, end, from.data(), x.data(), r);
-        for (Index i = begin; i < end; ++i)
-        {
-          finish(i, i, r + i);
-        }
-      });
-    return;
-  }
   const ColumnCount<K> k(columns);
-  ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
-    [&](Index i)
+  ForEachBlock(this->Parallel, static_cast<Index>(level.A.rows()),
+    [&](Index, Index begin, Index end)
     {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
-      float* r = level.R.data() + at;
-      ColumnRegisters<float, K> registers;
-      float* sums = registers.Or(r);
-      for (int c = 0; c < k; ++c)
+      float* const r = level.R.data();
+      if constexpr (K == 1)
       {
-        sums[c] = from.data()[at + c];
+        level.RowsOfA.Subtract(begin, end, from.data(), x.data(), r);
       }
-      AddProduct<K>(level.A, i, x, k, -1.0f, sums);
-      for (int c = 0; c < k; ++c)
+      else
       {
-        r[c] = sums[c];
+        AddProducts<K>(level.A, begin, end, -1.0F, x.data(), from.data(), r, k);
       }
-      finish(i, at, sums);
+      for (Index i = begin; i < end; ++i)
+      {
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
+        finish(i, at, ConstRowMap<K>(r + at, k));
+      }
     });
 }
 
@@ -235,37 +284,21 @@ template <int K>
 void Multigrid::Product(
   const Matrix& matrix, const SlicedRows& rows, const Numbers& x, Numbers& y, int columns, bool add)
 {
-  if constexpr (K == 1)
-  {
-    ForEachBlock(this->Parallel, rows.Size(),
-      [&](Index, Index begin, Index end)
-      {
-        if (add)
-        {
-          rows.Add(begin, end, x.data(), y.data());
-        }
-        else
-        {
-          rows.Multiply(begin, end, x.data(), y.data());
-        }
-      });
-    return;
-  }
   const ColumnCount<K> k(columns);
-  ForEach(this->Parallel, static_cast<Index>(matrix.cols()),
-    [&](Index i)
+  ForEachBlock(this->Parallel, static_cast<Index>(matrix.cols()),
+    [&](Index, Index begin, Index end)
     {
-      float* yi = y.data() + static_cast<std::ptrdiff_t>(i) * k;
-      ColumnRegisters<float, K> registers;
-      float* sums = registers.Or(yi);
-      for (int c = 0; c < k; ++c)
+      if constexpr (K != 1)
       {
-        sums[c] = add ? yi[c] : 0.0f;
+        AddProducts<K>(matrix, begin, end, 1.0F, x.data(), add ? y.data() : nullptr, y.data(), k);
       }
-      AddProduct<K>(matrix, i, x, k, 1.0f, sums);
-      for (int c = 0; c < k; ++c)
+      else if (add)
       {
-        yi[c] = sums[c];
+        rows.Add(begin, end, x.data(), y.data());
+      }
+      else
+      {
+        rows.Multiply(begin, end, x.data(), y.data());
       }
     });
 }
@@ -310,34 +343,31 @@ void Multigrid::Cycle(std::size_t number, int columns)
   }
   const ColumnCount<K> k(columns);
   Level& level = this->Levels[number];
-  const auto first = [&](Index i, std::ptrdiff_t at, const float* r)
-  {
-    for (int c = 0; c < k; ++c)
-    {
-      level.D.data()[at + c] = 4.0f / 3.0f * level.InverseD[i] * r[c];
-    }
-  };
-  const auto second = [&](Index i, std::ptrdiff_t at, const float* r, int c)
-  { return 0.2f * level.D.data()[at + c] + 2.4f * level.InverseD[i] * r[c]; };
+  const float* const inverseD = level.InverseD.data();
+  float* const rowsOfB = level.B.data();
+  float* const rowsOfD = level.D.data();
+  float* const rowsOfE = level.E.data();
+  float* const rowsOfX = level.X.data();
+  const auto first = [=](Index i, std::ptrdiff_t at, const auto& r)
+  { RowMap<K>(rowsOfD + at, k) = 4.0F / 3.0F * inverseD[i] * r; };
+  const auto second = [=](Index i, std::ptrdiff_t at, const auto& r)
+  { return 0.2F * RowMap<K>(rowsOfD + at, k) + 2.4F * inverseD[i] * r; };
 
   ForEach(this->Parallel, static_cast<Index>(level.A.rows()),
-    [&](Index i)
+    [=](Index i)
     {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
-      first(i, at, level.B.data() + at);
+      first(i, at, ConstRowMap<K>(rowsOfB + at, k));
     });
   this->Subtract<K>(level, level.B, level.D, columns,
-    [&](Index i, std::ptrdiff_t at, const float* r)
+    [=](Index i, std::ptrdiff_t at, const auto& r)
     {
-      for (int c = 0; c < k; ++c)
-      {
-        const float e = second(i, at, r, c);
-        level.E.data()[at + c] = e;
-        level.X.data()[at + c] = level.D.data()[at + c] + e;
-      }
+      RowMap<K> e(rowsOfE + at, k);
+      e = second(i, at, r);
+      RowMap<K>(rowsOfX + at, k) = RowMap<K>(rowsOfD + at, k) + e;
     });
   this->SubtractOwnPart<K>(
-    level, level.R, level.E, columns, [](Index, std::ptrdiff_t, const float*) {});
+    level, level.R, level.E, columns, [](Index, std::ptrdiff_t, const auto&) {});
 
   const bool last = number + 1 == this->Levels.size();
   Numbers& coarse = last ? this->CoarsestNumbers : this->Levels[number + 1].B;
@@ -350,13 +380,8 @@ void Multigrid::Cycle(std::size_t number, int columns)
 
   this->Subtract<K>(level, level.B, level.X, columns, first);
   this->Subtract<K>(level, level.R, level.D, columns,
-    [&](Index i, std::ptrdiff_t at, const float* r)
-    {
-      for (int c = 0; c < k; ++c)
-      {
-        level.X.data()[at + c] += level.D.data()[at + c] + second(i, at, r, c);
-      }
-    });
+    [=](Index i, std::ptrdiff_t at, const auto& r)
+    { RowMap<K>(rowsOfX + at, k) += RowMap<K>(rowsOfD + at, k) + second(i, at, r); });
 }
 
 } // namespace SurfaceDiffusion

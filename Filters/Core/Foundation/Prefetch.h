@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/Types.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace SurfaceDiffusion
+{
+
+/// Ask for the memory at `place`, which is read soon. Processors foresee where a loop over an array
+/// reads next, but not where the numbers in the array point to.
+inline void Prefetch(const void* place)
+{
+#if defined(__GNUC__) // and clang
+  __builtin_prefetch(place);
+#else
+  static_cast<void>(place);
+#endif
+}
+
+/// In a product of a sparse matrix with several columns: ask for the row of x that is needed some
+/// tens of rows after the entry before `slot`, one of `size` entries.
+template <typename Number>
+void PrefetchRow(const Number* x, const Index* inner, Index slot, Index size, int columns)
+{
+  constexpr Index distance = 280; // entries
+  const Index ahead = std::min(slot + distance, size) - 1;
+  Prefetch(x + static_cast<std::ptrdiff_t>(inner[ahead]) * columns);
+}
+
+} // namespace SurfaceDiffusion
