@@ -4,7 +4,6 @@
 
 #include "Core/Foundation/Types.h"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace SurfaceDiffusion
@@ -27,8 +26,11 @@ template <typename Number>
 void PrefetchRow(const Number* x, const Index* inner, Index slot, Index size, int columns)
 {
   constexpr Index distance = 280; // entries
-  const Index ahead = std::min(slot + distance, size) - 1;
-  Prefetch(x + static_cast<std::ptrdiff_t>(inner[ahead]) * columns);
+  const Index end = size - slot > distance ? slot + distance : size;
+  if (end > 0)
+  {
+    Prefetch(x + static_cast<std::ptrdiff_t>(inner[end - 1]) * columns);
+  }
 }
 
 } // namespace SurfaceDiffusion

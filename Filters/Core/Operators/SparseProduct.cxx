@@ -3,18 +3,59 @@
 #include "Core/Operators/SparseProduct.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Foundation/Prefetch.h"
 
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+/// Of one column: x stays in the cache, and asking for its entries takes longer than it saves.
+constexpr Index LargestCached = 200000;
+
+template <int K, bool AsksAhead>
+void MultiplyRowsOf(const SparseMatrix& matrix, const Values& x, Values& y, Index begin, Index end)
+{
+  const Index* const outer = matrix.outerIndexPtr();
+  const Index* const inner = matrix.innerIndexPtr();
+  const double* const a = matrix.valuePtr();
+  const Index size = outer[matrix.rows()];
+  const double* const in = x.data();
+  double* const out = y.data();
+  for (Index i = begin; i < end; ++i)
+  {
+    double sum[K] = {};
+    const Index last = outer[i + 1];
+    if constexpr (AsksAhead)
+    {
+      PrefetchRow(in, inner, last, size, K);
+    }
+    for (Index slot = outer[i]; slot < last; ++slot)
+    {
+      const double* xj = in + static_cast<std::ptrdiff_t>(inner[slot]) * K;
+      for (int k = 0; k < K; ++k)
+      {
+        sum[k] += a[slot] * xj[k];
+      }
+    }
+    for (int k = 0; k < K; ++k)
+    {
+      out[static_cast<std::ptrdiff_t>(i) * K + k] = sum[k];
+    }
+  }
+}
+
+} // namespace
+
 template <int K>
 void MultiplyRows(const SparseMatrix& matrix, const Values& x, Values& y, Index begin, Index end)
 {
-  const Index* outer = matrix.outerIndexPtr();
-  const Index* inner = matrix.innerIndexPtr();
-  const double* a = matrix.valuePtr();
   if constexpr (K == 0)
   {
+    const Index* const outer = matrix.outerIndexPtr();
+    const Index* const inner = matrix.innerIndexPtr();
+    const double* const a = matrix.valuePtr();
     for (Index i = begin; i < end; ++i)
     {
       y.row(i).setZero();
@@ -24,27 +65,13 @@ void MultiplyRows(const SparseMatrix& matrix, const Values& x, Values& y, Index 
       }
     }
   }
+  else if (K > 1 || x.rows() > LargestCached)
+  {
+    MultiplyRowsOf<K, true>(matrix, x, y, begin, end);
+  }
   else
   {
-    const double* in = x.data();
-    double* out = y.data();
-    for (Index i = begin; i < end; ++i)
-    {
-      double sum[K] = {};
-      const Index last = outer[i + 1];
-      for (Index slot = outer[i]; slot < last; ++slot)
-      {
-        const double* xj = in + static_cast<std::ptrdiff_t>(inner[slot]) * K;
-        for (int k = 0; k < K; ++k)
-        {
-          sum[k] += a[slot] * xj[k];
-        }
-      }
-      for (int k = 0; k < K; ++k)
-      {
-        out[static_cast<std::ptrdiff_t>(i) * K + k] = sum[k];
-      }
-    }
+    MultiplyRowsOf<K, false>(matrix, x, y, begin, end);
   }
 }
 
