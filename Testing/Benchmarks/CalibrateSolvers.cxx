@@ -35,11 +35,11 @@ struct Cost
   double PerIteration() const { return this->Solve / this->Iterations; }
 };
 
-/// The less of two measurements, as other work on the machine only adds time.
+/// The least of some measurements, as other work on the machine only adds time.
 Cost Measure(const HeatSystem& system, SolverMethod method, int columns = 1)
 {
   Cost least;
-  for (int round = 0; round < 2; ++round)
+  for (int round = 0; round < 5; ++round)
   {
     const auto solver = MakeSolver(method);
     solver->SetLimits({ Tolerance, 100000 });
