@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -27,11 +26,10 @@ double EstimateBetweenNeighbours(const ModelInputs& inputs, const PointData& dat
 }
 
 /// The estimate of noise between neighbours is that of white noise. A warning if there is none.
-void WarnOfSmoothData(
-  const ModelInputs& inputs, const PointData& data, double estimate, RunResult& result)
+void WarnOfSmoothData(const ModelInputs& inputs, double estimate, RunResult& result)
 {
-  const NeighbourVariation variation =
-    MeasureVariation(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data, estimate);
+  const NeighbourVariation variation = MeasureVariation(
+    *inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data, estimate);
   if (!variation.IsSmooth())
   {
     return;
@@ -49,19 +47,10 @@ void WarnOfSmoothData(
 /// Of the first guess of the search for a weight: keeps data to seven digits.
 constexpr double WeightWithoutNoise = 1e8;
 
-/// The data of the fidelity term: values of weight 0 are but a start, and may be anything.
-PointData WithWeight(PointData data)
-{
-  if (data.FidelityFactors.size() > 0)
-  {
-    data.Missing = data.Missing || data.FidelityFactors.array() == 0.0;
-  }
-  return data;
-}
-
 /// The measured data that the result has to differ from by the noise.
-PointData WithoutConstantParts(const ModelInputs& inputs, PointData data)
+PointData WithoutConstantParts(const ModelInputs& inputs)
 {
+  PointData data = inputs.Data;
   const Flags varying = FindVaryingVertices(*inputs.Surface.SharedAssembler(), data);
   if (varying.any())
   {
@@ -198,17 +187,18 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
   const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result, HeatBlur* blur)
 {
   const double unit = inputs.Units.ValueUnit;
-  PointData data = WithWeight(inputs.Data);
+  bool isUndetermined = false;
   double noise = NoiseAtVertices(inputs, noiseLevel);
   if (inputs.Cells && noiseLevel == 0.0)
   {
-    noise = EstimateBetweenNeighbours(inputs, data) * FindCellNoiseGain(inputs);
+    noise = EstimateBetweenNeighbours(inputs, inputs.Data) * FindCellNoiseGain(inputs);
   }
   else if (noiseLevel == 0.0)
   {
     const NoiseEstimate estimate =
-      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data);
+      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data);
     noise = estimate.Level();
+    isUndetermined = estimate.IsUndetermined;
     if (estimate.IsCorrelated())
     {
       result.Warnings.push_back(Sentence("the noise is correlated: its standard deviation is ")
@@ -218,18 +208,21 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
     }
     else
     {
-      WarnOfSmoothData(inputs, data, noise, result);
+      WarnOfSmoothData(inputs, noise, result);
     }
   }
   if (noise == 0.0)
   {
     result.Warnings.push_back(Sentence(Word::Setting("AutomaticFidelity"))
-      << " finds no noise in the data, which stay as they are (to set the standard deviation of "
-         "the noise, use "
-      << Word::Setting("NoiseLevel") << ")");
+      << (isUndetermined ? " finds no known value, of a weight other than 0, with enough others "
+                           "around it to estimate the noise from, so that known values stay as "
+                           "they are"
+                         : " finds no noise in the data, which stay as they are")
+      << " (to set the standard deviation of the noise, use " << Word::Setting("NoiseLevel")
+      << ")");
     return WeightWithoutNoise * start;
   }
-  const PointData compared = WithoutConstantParts(inputs, std::move(data));
+  const PointData compared = WithoutConstantParts(inputs);
   const auto discrepancy = [&](double fidelity)
   {
     const std::unique_ptr<Model> model = makeModel(fidelity);

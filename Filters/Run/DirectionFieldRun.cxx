@@ -133,7 +133,7 @@ void DirectionFieldRun::MakeField(
   const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
     this->Domain->MakeTriangles(), hints, core, this->Parallel, progress, &this->Report);
-  this->WithoutHint = settings.Method == DirectionMethod::Hints
+  this->WithoutDirection = settings.Method == DirectionMethod::Hints
     ? static_cast<Index>((this->Field.array() == 0.0).rowwise().all().count())
     : 0;
 }
@@ -143,18 +143,12 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
   Fingerprint inputs = this->SurfaceVersion;
   inputs.Add(this->FieldsVersion);
   std::vector<Warning> warnings;
-  const auto triangles = static_cast<Index>(this->Field.rows());
-  if (this->WithoutHint == triangles && triangles > 0)
+  if (this->WithoutDirection > 0)
   {
-    warnings.push_back({ Sentence(Word::Array("DirectionArray"))
-        << " has no direction along the surface anywhere, so the field is 0",
-      inputs });
-  }
-  else if (this->WithoutHint > 0)
-  {
-    warnings.push_back({ Sentence(Word::Array("DirectionArray"))
-        << " has no direction along the surface on connected components of together "
-        << this->WithoutHint << " triangles; the field is 0 there",
+    warnings.push_back({ Sentence("no direction of ")
+        << Word::Array("DirectionArray") << " reaches " << this->WithoutDirection
+        << (this->WithoutDirection == 1 ? " triangle" : " triangles")
+        << ", where the field is 0: directions along the surface spread across edges and fade",
       inputs });
   }
   std::ostringstream text;

@@ -46,7 +46,7 @@ private:
   void RotateTurnedTriangles(double angle, TangentVectors& lines);
 
   TangentVectors Field; ///< before the rotation by Angle
-  Index WithoutHint = 0; ///< triangles of connected components without hints, for Hints
+  Index WithoutDirection = 0; ///< triangles that no hint reaches
   Index Turned = 0; ///< triangles with another orientation than most, if that matters
   LineFieldReport Report;
 };

@@ -35,7 +35,7 @@ struct Cost
   double PerIteration() const { return this->Solve / this->Iterations; }
 };
 
-/// The least of some measurements, as other work on the machine only adds time.
+/// The least of five measurements, as other work on the machine only adds time.
 Cost Measure(const HeatSystem& system, SolverMethod method, int columns = 1)
 {
   Cost least;
@@ -195,7 +195,7 @@ struct Table
       "constexpr double CyclesPerDecade = %.2g; // x digits log10(c)\n", this->Cycles.Slope());
     std::printf(
       "\n// What a further column costs of the first one, of %d: those of a panel share a "
-      "pass over the matrix\n// or the factor.\n",
+      "pass over the matrix\n// or the factor, but for iterations in single precision.\n",
       Columns);
     for (const Line* line : { &this->SubstitutionColumn, &this->SingleIterationColumn,
            &this->DoubleIterationColumn, &this->CycleColumn })

@@ -24,32 +24,15 @@ namespace
 
 constexpr IterationLimits Limits{ 1e-6, 100000 };
 
-int CountWithDiagonal(const SparseMatrix& matrix, const Values& b, Values x)
+/// In double precision, with the preconditioner of the system.
+template <typename System>
+int Count(const System& system, const MatrixDiagonal& diagonal, const Values& b, Values x)
 {
-  MatrixDiagonal diagonal(SerialFor(), Reduction::Serial());
-  diagonal.Invert(matrix);
   ScaledResidual residual(diagonal, SerialFor(), Reduction::Serial());
-  residual.Start<1>(matrix, b, x);
-  const MatrixSystem system(matrix, diagonal.Inverse());
-  return ConjugateGradients<1, MatrixSystem>(system, residual.Entries, residual.Work, SerialFor())
+  residual.Start<1>(system.Matrix, b, x);
+  return ConjugateGradients<1, System>(system, residual.Entries, residual.Work, SerialFor())
     .Solve(x, Limits, ProgressMonitor())
     .Iterations;
-}
-
-int CountWithLines(const SparseMatrix& matrix, const Values& b, Values x)
-{
-  const auto solver = MakeConjugateGradientSolver();
-  solver->SetLimits(Limits);
-  solver->SetMatrix(matrix);
-  return solver->Solve(b, x).Iterations;
-}
-
-double ShareOnLines(const SparseMatrix& matrix)
-{
-  const Vector inverse = matrix.diagonal().cwiseInverse();
-  StrongLines lines(SerialFor());
-  lines.Set(matrix, inverse);
-  return static_cast<double>(lines.Vertices().size()) / static_cast<double>(matrix.rows());
 }
 
 } // namespace
@@ -74,12 +57,19 @@ int main()
     for (const double number : { 1.0, 30.0, 300.0 })
     {
       system.SetDiffusionNumber(number);
+      MatrixDiagonal diagonal(SerialFor(), Reduction::Serial());
+      diagonal.Invert(system.Matrix);
+      StrongLines lines(SerialFor());
+      lines.Set(system.Matrix, diagonal.Inverse());
       const Values noise = Noise(*system.Mesh);
       const Values b = system.RightHandSide(noise);
       std::printf("{\"surface\": \"%s\", \"vertices\": %d, \"c\": %g, \"on_lines\": %.2f, "
                   "\"diagonal\": %d, \"lines\": %d}\n",
-        surface.first.c_str(), system.Mesh->NumberOfVertices(), number, ShareOnLines(system.Matrix),
-        CountWithDiagonal(system.Matrix, b, noise), CountWithLines(system.Matrix, b, noise));
+        surface.first.c_str(), system.Mesh->NumberOfVertices(), number,
+        static_cast<double>(lines.Vertices().size()) / static_cast<double>(b.rows()),
+        Count(MatrixSystem(system.Matrix, diagonal.Inverse()), diagonal, b, noise),
+        Count(
+          LineSystem(system.Matrix, diagonal.Inverse(), lines, SerialFor()), diagonal, b, noise));
     }
   }
   return 0;

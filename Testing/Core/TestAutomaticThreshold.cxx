@@ -310,6 +310,31 @@ TEST(AutomaticThreshold, PaintKeepsItsEdgesUnderNoise)
   }
 }
 
+TEST(AutomaticThreshold, LeavesOutValuesOfWeightZero)
+{
+  const Shape surface = Icosphere(4);
+  std::vector<std::vector<Output>> found;
+  for (const double others : { 0.0, 5.0 })
+  {
+    RunInput input = MakeInput(
+      surface, [](const Eigen::RowVector3d& x) { return x[2] > 0.6 ? 1.0 : 0.0; }, 0.1);
+    for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+    {
+      const bool counts = input.Vertices(i, 2) >= 0.2;
+      input.Data.FidelityFactors.Values.push_back(counts ? 1.0 : 0.0);
+      input.Data.Data.Values(i, 0) += counts ? 0.0 : others * UniformRandom(9, 0, i);
+    }
+    found.push_back(FindEdges(input).Outputs);
+  }
+  for (const char* const name :
+    { "EstimatedNoiseLevel", "EffectiveEdgeThreshold", "EffectiveSmoothingLength" })
+  {
+    const double alone = FindNumber(found[0], name);
+    EXPECT_GT(alone, 0.0) << name;
+    EXPECT_NEAR(FindNumber(found[1], name), alone, 1e-9 * alone) << name;
+  }
+}
+
 TEST(AutomaticThreshold, NoiseOfAStepIsRemovedAsByTotalVariation)
 {
   for (const Shape& surface : { Globe(60), Icosphere(4) })

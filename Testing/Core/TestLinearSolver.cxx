@@ -114,6 +114,8 @@ TEST_P(AnySolver, TakesNoColumns)
   Values x(matrix.rows(), 0);
   EXPECT_TRUE(this->Solver->Solve(Values(matrix.rows(), 0), x).Converged);
   EXPECT_EQ(x.rows(), matrix.rows());
+  this->Solver->Precondition(Values(matrix.rows(), 0), x);
+  EXPECT_EQ(x.size(), 0);
 }
 
 TEST_P(AnySolver, TakesAZeroRightHandSide)

@@ -318,8 +318,8 @@ TEST(Multigrid, BitsOfAColumnDoNotDependOnTheOthers)
   const auto solver = MakeMultigridSolver();
   const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
   solver->SetMatrix(matrix);
-  const Values all = Noise(assembler->Mesh(), 4);
-  for (const Eigen::Index columns : { 1, 2, 3, 4 })
+  const Values all = Noise(assembler->Mesh(), 20);
+  for (const Eigen::Index columns : { 1, 2, 3, 4, 5, 8, 9, 16, 17, 20, 3, 12 })
   {
     Values z, one;
     solver->Precondition(all.leftCols(columns), z);

@@ -162,6 +162,29 @@ TEST(Run, AutomaticFidelityTakesTheNoiseFromValuesWithAWeight)
   }
 }
 
+TEST(Run, AutomaticFidelityWarnsOfTooFewValues)
+{
+  for (const Eigen::Index every : { 0, 100 })
+  {
+    RunInput input = NoisyCap(3);
+    for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+    {
+      input.Data.FidelityFactors.Values.push_back(every > 0 && i % every == 0 ? 1.0 : 0.0);
+    }
+    TotalVariationSettings settings;
+    settings.AutomaticFidelity = true;
+    SurfaceDiffusion::Run run(SerialFor());
+    StateOf(run, { input.Block() }, settings);
+    WarningLog log;
+    const std::vector<Sentence> warnings = log.Report(run.FindWarnings(Alone));
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].Text().find("AutomaticFidelity finds no known value, of a weight other "
+                                      "than 0, with enough others around it"),
+      std::string::npos)
+      << warnings[0].Text();
+  }
+}
+
 TEST(Run, AutomaticFidelityWarnsOfCorrelatedNoise)
 {
   RunInput input(Testing::Icosphere(4));

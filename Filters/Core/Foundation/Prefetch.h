@@ -20,13 +20,14 @@ inline void Prefetch(const void* place)
 #endif
 }
 
-/// In a product of a sparse matrix with several columns: ask for the row of x that is needed some
-/// tens of rows after the entry before `slot`, one of `size` entries.
+/// Products of a sparse matrix with several columns call this once per row of the matrix, with the
+/// end of the row's entries, of which all rows have `size`. It asks for the row of x, or its first
+/// cache line, that an entry needs some tens of rows later.
 template <typename Number>
-void PrefetchRow(const Number* x, const Index* inner, Index slot, Index size, int columns)
+void PrefetchRow(const Number* x, const Index* inner, Index endOfRow, Index size, int columns)
 {
   constexpr Index distance = 280; // entries
-  const Index end = size - slot > distance ? slot + distance : size;
+  const Index end = size - endOfRow > distance ? endOfRow + distance : size;
   if (end > 0)
   {
     Prefetch(x + static_cast<std::ptrdiff_t>(inner[end - 1]) * columns);

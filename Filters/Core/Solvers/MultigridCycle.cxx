@@ -35,7 +35,8 @@ void AddProducts(const Matrix& matrix, Index begin, Index end, float sign, const
   {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
     RowMap<K> row(y + at, k);
-    std::conditional_t<K == 0, RowMap<K>&, Row<K>> sums(row); // in registers
+    std::conditional_t<K == 0, RowMap<K>&, Row<K>> sums(
+      row); // a copy in registers, or the row itself if K is 0
     if (b)
     {
       sums = ConstRowMap<K>(b + at, k);
@@ -57,7 +58,7 @@ void AddProducts(const Matrix& matrix, Index begin, Index end, float sign, const
   }
 }
 
-/// Columns of a cycle that fill vector registers, beside those of ForColumns().
+/// A number of columns that fills a vector register, which ForColumns() does not know.
 constexpr int SmallPanel = 4;
 
 /// The number of columns over which a cycle for k of them runs: one for which it is compiled.
@@ -139,8 +140,8 @@ void Multigrid::TakeResiduals(const Values& r, const std::vector<double>& scale)
   ForEachBlock(this->Parallel, static_cast<Index>(r.rows()),
     [&](Index, Index begin, Index end)
     {
-      const double* from = &r(begin, 0);
-      float* to = &b(begin, 0);
+      const double* from = r.data() + static_cast<std::ptrdiff_t>(begin) * k;
+      float* to = b.data() + static_cast<std::ptrdiff_t>(begin) * padded;
       for (Index i = begin; i < end; ++i, from += k, to += padded)
       {
         for (int c = 0; c < k; ++c)
@@ -162,8 +163,8 @@ void Multigrid::GiveSolutions(const std::vector<double>& scale, Values& z) const
   ForEachBlock(this->Parallel, static_cast<Index>(z.rows()),
     [&](Index, Index begin, Index end)
     {
-      const float* from = &x(begin, 0);
-      double* to = &z(begin, 0);
+      const float* from = x.data() + static_cast<std::ptrdiff_t>(begin) * padded;
+      double* to = z.data() + static_cast<std::ptrdiff_t>(begin) * k;
       for (Index i = begin; i < end; ++i, from += padded, to += k)
       {
         for (int c = 0; c < k; ++c)
@@ -214,7 +215,7 @@ template <int K, typename Finish>
 void Multigrid::Subtract(
   Level& level, const Numbers& from, const Numbers& x, int columns, const Finish& finish)
 {
-  if (level.IsOnInterface.empty())
+  if (level.OverProcesses->IsSerial())
   {
     this->SubtractRows<K>(level, from, x, columns, finish);
     return;

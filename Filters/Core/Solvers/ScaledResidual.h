@@ -19,8 +19,8 @@ namespace SurfaceDiffusion
 {
 
 /// The residuals b - A x of several columns, each in a unit of its own, in which it is of moderate
-/// size, and their squares in the norm of D^-1. Of a matrix that is accumulated over processes; b,
-/// x and the residuals are consistent. K: the number of columns, or 0 for any.
+/// size, and their squares in the norm of D^-1. A is accumulated over the processes; b, x and the
+/// residuals are consistent. K: the number of columns, or 0 for any.
 class ScaledResidual
 {
 public:
@@ -32,8 +32,9 @@ public:
   {
   }
 
+  // Start() exchanges both for those of another number of columns.
   Values Entries;
-  ConjugateGradientWork Work; ///< with the units and squares of the columns, and of those of b
+  ConjugateGradientWork Work; ///< Unit, Sums (the squares) and Reference (those of b) are set
 
   /// The residual of a first x, which sets the units.
   template <int K>

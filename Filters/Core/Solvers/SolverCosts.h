@@ -27,7 +27,7 @@ constexpr double Cycles = 9.4; // x digits, at c = 1
 constexpr double CyclesPerDecade = 1.6; // x digits log10(c)
 
 // What a further column costs of the first one, of 8: those of a panel share a pass over the matrix
-// or the factor.
+// or the factor, but for iterations in single precision.
 constexpr double SubstitutionColumn = 0.18;
 constexpr double SingleIterationColumn = 1.1;
 constexpr double DoubleIterationColumn = 0.49;

@@ -17,8 +17,8 @@ namespace SurfaceDiffusion
 /// TriangleMesh::InputVertex.
 struct FitData
 {
-  /// Values between those that were measured are missing. pattern: that of the assembler; it must
-  /// outlive this.
+  /// Values between those that were measured are missing, and those of weight 0, which may be
+  /// anything. pattern: that of the assembler; it must outlive this.
   FitData(const Assembler& assembler, const SparsePattern& pattern,
     const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range)
     : Operators(assembler)
@@ -28,6 +28,11 @@ struct FitData
     , Neighbours(data.Measured ? data.Measured->Neighbours : pattern)
     , Missing(data.Missing.segment(range.Begin, range.Size()))
   {
+    if (data.FidelityFactors.size() > 0)
+    {
+      this->Missing =
+        this->Missing || data.FidelityFactors.segment(range.Begin, range.Size()).array() == 0.0;
+    }
     if (data.Measured)
     {
       this->IsBetween = &data.Measured->IsBetween;

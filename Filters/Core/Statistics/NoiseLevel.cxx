@@ -21,14 +21,15 @@ constexpr int FarthestRing = 8;
 constexpr double MostGrowth = 3.0;
 constexpr double SettledGrowth = 1.3; ///< at the farthest ring
 
-/// The estimate from the vertices at a distance of `edges` edges.
-double EstimateAt(int edges, const FitData& data)
+/// The estimate from the vertices at a distance of `edges` edges, of which there are enough around
+/// `count` vertices.
+double EstimateAt(int edges, const FitData& data, double& count)
 {
   const Eigen::Index columns = data.Given.cols();
   Rings rings = data.MakeRings();
   const Eigen::RowVectorXd roundOff = RoundOffOf(data);
   RobustDeviations deviations(columns);
-  double count = 0.0;
+  count = 0.0;
   for (const Index i : data.SampleVertices(LargestSample))
   {
     if (data.IsMissing(i))
@@ -119,15 +120,18 @@ NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pat
   const Eigen::Ref<const Points>& points, const PointData& given, VertexRange range)
 {
   FitData data(assembler, pattern, points, given, range);
+  const bool anyKnown = !data.Missing.all();
   data.Missing = !FindVarying(data);
   NoiseEstimate estimate;
-  estimate.BetweenNeighbours = EstimateAt(1, data);
+  double count = 0.0;
+  estimate.BetweenNeighbours = EstimateAt(1, data, count);
+  estimate.IsUndetermined = count == 0.0 && !(anyKnown && data.Missing.all());
   estimate.Apart = estimate.BetweenNeighbours;
   double apart = estimate.BetweenNeighbours;
   double growth = MostGrowth;
   for (int edges = 2; edges <= FarthestRing && apart > 0.0; edges *= 2)
   {
-    const double next = EstimateAt(edges, data);
+    const double next = EstimateAt(edges, data, count);
     if (next <= 1.15 * apart)
     {
       estimate.Apart = apart;

@@ -16,6 +16,8 @@ struct NoiseEstimate
 {
   double BetweenNeighbours = 0.0; ///< from the neighbours of each vertex
   double Apart = 0.0; ///< from vertices farther apart, as far as correlation was found
+  /// Whether it is 0 because no vertex has enough known ones around, not since there is no noise.
+  bool IsUndetermined = false;
 
   /// White noise has the same deviation at all distances. The differences of correlated noise, of
   /// data that were interpolated or smoothed, are larger at larger distances.

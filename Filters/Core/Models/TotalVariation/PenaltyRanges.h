@@ -11,8 +11,8 @@ namespace SurfaceDiffusion
 
 // The ranges of values that TotalVariationMinimizer derives its first penalties from.
 
-/// Of u on each triangle: that on the whole surface, except at outliers. quadratic: the weights of
-/// the fidelity, of which one above 0 lets the penalty grow.
+/// The typical range of u on each triangle: that on the whole surface, except at outliers.
+/// quadratic: the weights of the fidelity, of which one above 0 lets the penalty grow.
 Vector RangesOfTriangles(const TriangleMesh& mesh, const Eigen::Ref<const Values>& u,
   const Values& quadratic, const ParallelFor& parallel);
 
