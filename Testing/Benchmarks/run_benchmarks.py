@@ -185,7 +185,7 @@ def choices(rows):
 
 def libraries(rows, solves):
     """Milliseconds of the set-up and some solves with each solver, per step size and columns, and
-    the time of the solver that Automatic selects over each."""
+    the time of the solver that Automatic begins with over each."""
     text = ""
     cases = sorted({(row["c"], row["columns"]) for row in rows})
     sizes = sorted({row["vertices"] for row in rows})
@@ -204,7 +204,8 @@ def libraries(rows, solves):
         text += (f"Δt = {c:g} h², {columns} column{'s' if columns > 1 else ''}:\n\n"
                  + table(["ms"] + [f"{n:,}" for n in sizes], body))
     good = sum(ratio <= 1.3 for ratio in ratios)
-    return text + f"Automatic takes at most 1.3 times the fastest in {good} of {len(ratios)} cases.\n\n"
+    return text + ("The solver that Automatic begins with takes at most 1.3 times the fastest in "
+                   f"{good} of {len(ratios)} cases.\n\n")
 
 
 def peers(options, program, folder):
@@ -319,14 +320,15 @@ def main():
             f"with the longest one. {int(shares[0]['vertices']):,} vertices.\n\n"
             + table(["stage", "ms", "serial"], [[row["stage"], number(row["ms"]),
                                                  f"{100 * row['serial']:.1f} %"] for row in shares])
-            + "## The solver that Automatic selects\n\nRuns of backward Euler steps: the selected "
-            "solver (D: Direct, C: ConjugateGradient, M: Multigrid) and its time over that of the "
-            "fastest.\n\n"
+            + "## The solver that Automatic selects\n\nRuns of backward Euler steps: the solver that "
+            "Automatic begins with (D: Direct, C: ConjugateGradient, M: Multigrid) and the time of "
+            "its run over that of the fastest.\n\n"
             + choices(grid))
     for solves in (1, 10) if compared_libraries else ():
         page += (f"## {solves} step{'s' if solves > 1 else ''} with the solvers of other libraries\n\n"
                  "Set-up and solves to a residual of 1e-10, by `CompareLibraries`. In brackets: the "
-                 "solver that Automatic selects over this one.\n\n"
+                 "solver that Automatic begins with over this one. Where that forecasts too many "
+                 "iterations, Automatic changes over to the next, as in the section before.\n\n"
                  + libraries(compared_libraries, solves))
     if options.peers:
         with tempfile.TemporaryDirectory() as folder:
