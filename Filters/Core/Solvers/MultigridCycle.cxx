@@ -35,8 +35,8 @@ void AddProducts(const Matrix& matrix, Index begin, Index end, float sign, const
   {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * k;
     RowMap<K> row(y + at, k);
-    std::conditional_t<K == 0, RowMap<K>&, Row<K>> sums(
-      row); // a copy in registers, or the row itself if K is 0
+    // A copy in registers, or the row itself if K is 0
+    std::conditional_t<K == 0, RowMap<K>&, Row<K>> sums(row);
     if (b)
     {
       sums = ConstRowMap<K>(b + at, k);
