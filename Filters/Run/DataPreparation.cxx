@@ -19,10 +19,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
-double EstimateBetweenNeighbours(const ModelInputs& inputs, const PointData& data)
+NoiseEstimate EstimateNoiseOf(const ModelInputs& inputs, const PointData& data)
 {
-  return EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data)
-    .BetweenNeighbours;
+  return EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), data);
 }
 
 /// The estimate of noise between neighbours is that of white noise. A warning if there is none.
@@ -88,7 +87,7 @@ double FindCellNoiseGain(const ModelInputs& inputs)
   }
   PointData data = PointData::FromValues(cells.ToVertices(noise, Vector::Ones(noise.rows())).Of);
   data.Measured = inputs.Data.Measured;
-  const double found = EstimateBetweenNeighbours(inputs, data);
+  const double found = EstimateNoiseOf(inputs, data).BetweenNeighbours;
   return found > 0.0 ? NoiseGain(inputs) / found : 0.0;
 }
 
@@ -187,18 +186,16 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
   const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result, HeatBlur* blur)
 {
   const double unit = inputs.Units.ValueUnit;
-  bool isUndetermined = false;
+  const NoiseEstimate estimate =
+    noiseLevel == 0.0 ? EstimateNoiseOf(inputs, inputs.Data) : NoiseEstimate();
   double noise = NoiseAtVertices(inputs, noiseLevel);
   if (inputs.Cells && noiseLevel == 0.0)
   {
-    noise = EstimateBetweenNeighbours(inputs, inputs.Data) * FindCellNoiseGain(inputs);
+    noise = estimate.BetweenNeighbours * FindCellNoiseGain(inputs);
   }
   else if (noiseLevel == 0.0)
   {
-    const NoiseEstimate estimate =
-      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), inputs.Data);
     noise = estimate.Level();
-    isUndetermined = estimate.IsUndetermined;
     if (estimate.IsCorrelated())
     {
       result.Warnings.push_back(Sentence("the noise is correlated: its standard deviation is ")
@@ -214,10 +211,11 @@ double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, 
   if (noise == 0.0)
   {
     result.Warnings.push_back(Sentence(Word::Setting("AutomaticFidelity"))
-      << (isUndetermined ? " finds no known value, of a weight other than 0, with enough others "
-                           "around it to estimate the noise from, so that known values stay as "
-                           "they are"
-                         : " finds no noise in the data, which stay as they are")
+      << (estimate.IsUndetermined
+             ? " finds no known value, of a weight other than 0, with enough others "
+               "around it to estimate the noise from, so that known values stay as "
+               "they are"
+             : " finds no noise in the data, which stay as they are")
       << " (to set the standard deviation of the noise, use " << Word::Setting("NoiseLevel")
       << ")");
     return WeightWithoutNoise * start;

@@ -20,9 +20,9 @@ inline void Prefetch(const void* place)
 #endif
 }
 
-/// Products of a sparse matrix with several columns call this once per row of the matrix, with the
-/// end of the row's entries, of which all rows have `size`. It asks for the row of x, or its first
-/// cache line, that an entry needs some tens of rows later.
+/// Products of a sparse matrix with x call this once per row of the matrix, with the end of the
+/// row's entries, of which all rows have `size`. It asks for the row of x, or its first cache line,
+/// that an entry needs some tens of rows later.
 template <typename Number>
 void PrefetchRow(const Number* x, const Index* inner, Index endOfRow, Index size, int columns)
 {
