@@ -40,7 +40,7 @@ def read_volume(content):
         image = import_reader("nibabel.freesurfer", content).MGHImage.from_bytes(content.bytes)
     else:
         nibabel = import_reader("nibabel", content)
-        single = content.bytes[344:346] == b"n+" or content.bytes[344:346] == b"ni"
+        single = content.bytes[344:346] == b"n+"
         image = (nibabel.Nifti1Image if single else nibabel.Nifti2Image).from_bytes(content.bytes)
     values = np.asanyarray(image.dataobj)
     shape = (*values.shape, 1, 1)

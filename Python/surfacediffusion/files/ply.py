@@ -268,7 +268,8 @@ class _TextReader:
         if any(len(row) != len(element.properties) for row in rows):
             raise ValueError(f"a line of the element {element.name} does not have "
                              f"{len(element.properties)} numbers")
-        values = np.array([[float(word) for word in row] for row in rows]).reshape(len(rows), -1)
+        values = np.array([[float(word) for word in row] for row in rows]).reshape(
+            len(rows), len(element.properties))
         return {p.name: _as_type(values[:, i], p) for i, p in enumerate(element.properties)}
 
     def lists(self, element, wanted):
