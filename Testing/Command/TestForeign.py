@@ -102,7 +102,8 @@ class VTK(ForeignTest):
         for kind, end in (("PolyData", ".vtp"), ("UnstructuredGrid", ".vtu")):
             wrong += [(end, xml(**{key: number}, kind=kind)) for key in ("points", "cells", "components")
                       for number in ("1000000000", "1000000000000", "-1", "9" * 18)]
-            wrong += [(end, xml(offsets=offsets, kind=kind)) for offsets in ((3, 6, 9, 1000), (-3, 6, 9, 12))]
+            wrong += [(end, xml(offsets=offsets, kind=kind)) for offsets in (
+                (3, 6, 9, 1000), (-3, 6, 9, 12), (3, 6, 9, 10**15))]
             wrong.append((end, xml(corners=[0, 1, 99, *CORNERS[3:]], kind=kind)))
         self.refused_all(wrong, "(damaged|a face refers)")
 
@@ -175,6 +176,19 @@ class VTK(ForeignTest):
         np.testing.assert_array_equal(found[3:], np.load("b.npy"))
         self.assertEqual(len(found), 5)
 
+    def test_all_attributes_of_a_legacy_file_are_kept(self):
+        count = {"SCALARS": 1, "VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TEXTURE_COORDINATES": 2}
+        text = HEAD.format("3.0", "ASCII", "POLYDATA") + TETRAHEDRON + "POLYGONS 2 8\n3 0 1 2\n3 0 3 1\nPOINT_DATA 4\n"
+        names = [f"{word.lower()}{i}" for word in count for i in (1, 2)]
+        for name in names:
+            word = name[:-1].upper()
+            text += f"{word} {name} {'2 ' * (word[0] + word[2] == 'TX')}float\n"
+            text += "LOOKUP_TABLE default\n" * (word == "SCALARS") + "0.5 " * 4 * count[word] + "\n"
+        surface = read_surface(self.write("a.vtk", text))
+        surface.save("b.vtk", 2 * surface.points)
+        found = read_data("b.vtk").names
+        self.assertEqual({name: found.count(name) for name in names}, {name: count[name[:-1].upper()] for name in names})
+
     def test_names_of_arrays_may_have_any_signs(self):
         names = ["p<0.05", "A&B", 'a "b"', "c>d", "&amp;", "e\tf"]
         samples.write_surface("a.surf.gii")
@@ -192,6 +206,17 @@ class VTK(ForeignTest):
             found = read_data(f"b.{end}")
             self.assertEqual(found.names[:3], ["f", *names[:2]])
             self.assertEqual(set(found.names), {"f", *names})
+
+
+class PLY(ForeignTest):
+    def test_new_columns_have_names_that_are_read_again(self):
+        self.write("a.ply", samples.ply_bytes())
+        self.write("b.ply", samples.ply_bytes(binary=False))
+        for name in ("a.ply", "b.ply"):
+            self.succeed("random-field", name, "o.ply", "--fwhm", 8, "--count", 2)
+            self.assertEqual(read_data("o.ply").names[-2:], ["field_1", "field_2"])
+            self.succeed("derivatives", name, name, "o.ply", "--quantity", "gradient")
+            self.assertIn("quality_z", read_data("o.ply").names)
 
 
 class GIFTI(ForeignTest):

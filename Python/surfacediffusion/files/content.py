@@ -117,13 +117,13 @@ def _is_cifti_on_disk(file):
 
 
 @contextlib.contextmanager
-def on_disk(content):
+def on_disk(data):
     """The path of a temporary file with these bytes, for libraries that read nothing else. The file
-    itself is opened once, in read_content(), because it may be compressed or a pipe."""
+    they are from is opened once, in read_content(), because it may be compressed or a pipe."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "content")
         with open(path, "wb") as file:
-            file.write(content.bytes)
+            file.write(data)
         yield path
 
 

@@ -104,7 +104,7 @@ def write_label(values, lines):
 def read_annot(content):
     """The number of the label of each vertex (n,), -1 for none, and {number: name}."""
     freesurfer = import_reader("nibabel.freesurfer", content)
-    with on_disk(content) as path:
+    with on_disk(content.bytes) as path:
         labels, _, names = freesurfer.read_annot(path)
     return labels.astype(np.int64), {i: name.decode("utf-8", "replace")
                                      for i, name in enumerate(names)}

@@ -52,7 +52,10 @@ class Ply:
         return np.column_stack([self.vertices[axis] for axis in "xyz"])
 
     def write(self, columns) -> bytes:
-        """The file with these columns {name: values} of the vertices; new ones come last."""
+        """The file with these columns {name: values} of the vertices; new ones come last, and have names
+        without spaces, which end a name in the header."""
+        columns = {name if name in self.vertices else re.sub(r"\s+", "_", name.strip()) or "value": values
+                   for name, values in columns.items()}
         new = [name for name in columns if name not in self.vertices]
         header = b"".join(self._header_with({name: columns[name] for name in new}))
         whole = {**self.vertices, **{name: np.asarray(v) for name, v in columns.items()}}

@@ -161,7 +161,7 @@ def _write_gifti(surface, points):
 def _read_freesurfer(content):
     freesurfer = import_reader("nibabel.freesurfer", content)
     # nibabel warns about files without a footer, which are allowed.
-    with warnings.catch_warnings(), on_disk(content) as path:
+    with warnings.catch_warnings(), on_disk(content.bytes) as path:
         warnings.simplefilter("ignore")
         points, faces, info = freesurfer.read_geometry(path, read_metadata=True)
     return SurfaceFile(content.path, content.kind, points, faces.astype(np.int64),

@@ -21,30 +21,30 @@ _EXPANSION = {"vtkZLibDataCompressor": 1100, "vtkLZ4DataCompressor": 260, "vtkLZ
 
 
 class _Xml:
-    """Goes through the elements of a file. What its arrays announce is at most what its bytes can hold."""
+    """Goes through the elements of a file. What its arrays announce is at most what its bytes can hold.
+
+    type     "PolyData", ...
+    offsets  of the cells, their attributes and text
+    """
 
     def __init__(self, data):
         self.data, self.type, self.order, self.compressor = data, "", "<", ""
         self.number = np.dtype("u4")  #: of the lengths before arrays
-        self.announced, self.offsets = 0, set()
-        self.piece, self.parents = {}, []
+        self.announced, self.places, self.piece = 0, set(), {}
+        self.parents, self.offsets, self.root = [], [], b""
         self.appended = re.search(rb"<AppendedData\b[^>]*>\s*_", data)
-
-    def read(self):
         self.parser = expat.ParserCreate()
-        self.parser.StartElementHandler = self._start
-        self.parser.EndElementHandler = lambda name: self.parents.pop()
+        self.parser.StartElementHandler, self.parser.EndElementHandler = self._start, self._end
         try:
             # Raw bytes behind the mark are no XML.
-            self.parser.Parse(self.data[:self.appended.end()] if self.appended else self.data,
-                              self.appended is None)
+            self.parser.Parse(data[:self.appended.end()] if self.appended else data, self.appended is None)
         except expat.ExpatError as error:
             raise ValueError(f"no XML: {error}") from None
-        return self.type
 
     def _start(self, name, given):
         if name == "VTKFile":
             self.type, self.compressor = given.get("type", ""), given.get("compressor", "")
+            self.root = self.data[self.parser.CurrentByteIndex:self._end_of_tag()]
             self.number = np.dtype("u8" if given.get("header_type") == "UInt64" else "u4").newbyteorder(
                 ">" if given.get("byte_order") == "BigEndian" else "<")
         elif name == "Piece":
@@ -55,40 +55,54 @@ class _Xml:
             self._array(given)
         self.parents.append(name)
 
+    def _end(self, name):
+        self.parents.pop()
+        if self.offsets and self.offsets[-1][1] is None:
+            given, _, start = self.offsets[-1]
+            self.offsets[-1] = given, self.data[start:self.parser.CurrentByteIndex], start
+
+    def _end_of_tag(self):
+        """An attribute may hold the sign that ends the tag."""
+        tag = re.compile(rb"<(?:[^\"'>]|\"[^\"]*\"|'[^']*')*>").match(self.data, self.parser.CurrentByteIndex)
+        return tag.end() if tag else self.parser.CurrentByteIndex
+
     def _announce(self, count, what):
         self.announced += count
-        if self.announced > self._room():
+        if self.announced > self.room:
             raise ValueError(f"{what} announces {count} numbers, the file has {len(self.data)} bytes")
 
-    def _room(self):
+    @property
+    def room(self):
         return len(self.data) * _EXPANSION.get(self.compressor, 1)
 
     def _array(self, given):
-        parent = self.parents[-1] if self.parents else ""
+        parent, name = self.parents[-1] if self.parents else "", given.get("Name", "")
         components = _count(given.get("NumberOfComponents") or 3 ** (parent == "Points"), "NumberOfComponents")
         if parent in ("Points", "PointData"):
             tuples = self.piece.get("NumberOfPoints", 0)
         elif parent == "CellData":
             tuples = sum(self.piece.get("NumberOf" + cells, 0) for cells in (*_CELLS, "Cells"))
+        elif parent in (*_CELLS, "Cells"):
+            tuples = self.piece.get("NumberOf" + parent, 0) if name in ("offsets", "types") else 0
+            if name == "offsets":
+                self.offsets.append(({**given, "NumberOfTuples": tuples}, None, self._end_of_tag()))
+            elif name not in ("types", "connectivity") and tuples:
+                raise ValueError(f"cells with {name[:40]!r}, as volumes have; allowed: polygons")
         else:
             tuples = _count(given.get("NumberOfTuples") or 0, "NumberOfTuples")
-        offset = given.get("offset", "")
-        if not offset or offset not in self.offsets:  # arrays may share their bytes
+        place = given.get("offset", "")
+        if not place or place not in self.places:  # arrays may share their bytes
             bits = 1 if given.get("type") == "Bit" else 8
-            self._announce(components * tuples * bits // 8, f"the array {given.get('Name', '')}")
-        self.offsets.add(offset)
-        self._check_length(given, offset)
+            self._announce(components * tuples * bits // 8, f"the array {name}")
+        self.places.add(place)
+        self._check_length(given.get("format", "ascii"), place)
 
-    def _check_length(self, given, offset):
+    def _check_length(self, form, place):
         """The bytes that are announced before the bytes of an array."""
-        form = given.get("format", "ascii")
         if form == "binary":
-            place = self.parser.CurrentByteIndex
-            # An attribute may hold the sign that ends the tag.
-            tag = re.compile(rb"<(?:[^\"'>]|\"[^\"]*\"|'[^']*')*>").match(self.data, place)
-            start, raw = tag.end() if tag else place, False
-        elif form == "appended" and self.appended and re.fullmatch(r"\s*\+?\d{1,18}\s*", offset):
-            start, raw = self.appended.end() + int(offset), b'"raw"' in self.appended[0]
+            start, raw = self._end_of_tag(), False
+        elif form == "appended" and self.appended and re.fullmatch(r"\s*\+?\d{1,18}\s*", place):
+            start, raw = self.appended.end() + int(place), b'"raw"' in self.appended[0]
         else:
             return
         needed = self.number.itemsize * (2 if self.compressor else 1)
@@ -99,9 +113,24 @@ class _Xml:
             return  # VTK says so
         sizes = np.frombuffer(head, self.number, needed // self.number.itemsize).tolist()
         # Blocks of a compressed array have a length each.
-        if sizes[0] > len(self.data) or np.prod(sizes, dtype=float) > self._room():
+        if sizes[0] > len(self.data) or np.prod(sizes, dtype=float) > self.room:
             raise ValueError(f"an array announces {' blocks of '.join(map(str, sizes))} bytes, the file has "
                              f"{len(self.data)}")
+
+    def file_of_offsets(self):
+        """A file without points and cells, whose arrays are the offsets of the cells of this one."""
+        arrays = b""
+        for given, text, _ in self.offsets:
+            words = {key: str(given[key]) for key in ("type", "NumberOfTuples", "format", "offset") if key in given}
+            if not all(re.fullmatch(r"[\w ]+", word) for word in words.values()):
+                raise ValueError(f"offsets of cells described as {words}")
+            attributes = " ".join(f'{key}="{word}"' for key, word in words.items())
+            arrays += f'<DataArray Name="{len(arrays)}" {attributes}>'.encode() + (text or b"") + b"</DataArray>"
+        kind = self.type.encode()
+        piece = b'<Piece NumberOfPoints="0"' + b"".join(
+            b' NumberOf%s="0"' % cells.encode() for cells in (*_CELLS, "Cells")) + b"/>"
+        return (self.root + b"<%s><FieldData>" % kind + arrays + b"</FieldData>" + piece + b"</%s>" % kind
+                + (self.data[self.appended.start():] if self.appended else b"</VTKFile>"))
 
 
 def _count(text, name):
@@ -110,9 +139,17 @@ def _count(text, name):
     return int(text)
 
 
-def check_xml(data):
-    """The type of the data of a VTK XML file."""
-    return _Xml(data).read()
+def check_xml(data, read):
+    """The type of the data of a VTK XML file. read(type, bytes): the object of VTK that a file is."""
+    found = _Xml(data)
+    if found.type in ("PolyData", "UnstructuredGrid") and found.offsets:
+        # VTK allocates as many corners as the last one says.
+        fields = read(found.type, found.file_of_offsets()).GetFieldData()
+        for array in map(fields.GetArray, range(fields.GetNumberOfArrays())):
+            low, high = array.GetRange() if array is not None and array.GetNumberOfTuples() else (0, 0)
+            if not 0 <= low <= high <= found.room:
+                raise ValueError(f"the offsets of cells are {low:.10g} to {high:.10g}, the file has {len(data)} bytes")
+    return found.type
 
 
 # ---- legacy --------------------------------------------------------------------------------------

@@ -21,19 +21,26 @@ _FACES, _PIXEL, _THINNER = (5, 7, 8, 9), 8, (0, 1, 2, 3, 4, 21)
 
 def read(content):
     """The vtkPolyData or vtkUnstructuredGrid of the file. Strips of triangles are triangles then."""
-    core = import_reader("vtkmodules.vtkCommonCore", content)
+    import_reader("vtkmodules.vtkCommonCore", content)
     if content.kind == "vtk":
-        from vtkmodules import vtkIOLegacy
-
-        is_grid = check_legacy(content.bytes) == "unstructured_grid"
-        Reader = vtkIOLegacy.vtkUnstructuredGridReader if is_grid else vtkIOLegacy.vtkPolyDataReader
+        mesh = _read(content, f"legacy {check_legacy(content.bytes)}", content.bytes)
     else:
-        from vtkmodules import vtkIOXML
-
-        kind = check_xml(content.bytes)
+        kind = check_xml(content.bytes, lambda kind, data: _read(content, kind, data))
         if kind not in ("PolyData", "UnstructuredGrid"):
             raise content.error(f"a VTK XML file of {kind or 'no type'}; allowed: PolyData, UnstructuredGrid")
-        Reader = vtkIOXML.vtkXMLPolyDataReader if kind == "PolyData" else vtkIOXML.vtkXMLUnstructuredGridReader
+        mesh = _read(content, kind, content.bytes)
+    return _without_strips(mesh) if mesh.IsA("vtkPolyData") and mesh.GetNumberOfStrips() else mesh
+
+
+def _read(content, kind, data):
+    """The object of VTK that `data` are, in the format and of the type `kind`."""
+    from vtkmodules import vtkCommonCore as core
+    from vtkmodules import vtkIOLegacy, vtkIOXML
+
+    reader = {"legacy polydata": vtkIOLegacy.vtkPolyDataReader,
+              "legacy unstructured_grid": vtkIOLegacy.vtkUnstructuredGridReader,
+              "PolyData": vtkIOXML.vtkXMLPolyDataReader,
+              "UnstructuredGrid": vtkIOXML.vtkXMLUnstructuredGridReader}[kind]()
     # Errors of readers and of their parsers go to the output window, and to a log on standard error.
     before = core.vtkOutputWindow.GetInstance()
     verbosity = core.vtkLogger.GetCurrentVerbosityCutoff()
@@ -41,14 +48,15 @@ def read(content):
     core.vtkOutputWindow.SetInstance(window)
     core.vtkLogger.SetStderrVerbosity(core.vtkLogger.VERBOSITY_OFF)
     try:
-        reader = Reader()
         if content.kind == "vtk":
             reader.ReadAllScalarsOn()
             reader.ReadAllVectorsOn()
             reader.ReadAllNormalsOn()
+            reader.ReadAllTensorsOn()
+            reader.ReadAllTCoordsOn()
             reader.ReadAllFieldsOn()
             reader.ReadAllColorScalarsOn()
-        with on_disk(content) as path:
+        with on_disk(data) as path:
             reader.SetFileName(path)
             reader.Update()
         problems = window.GetOutput()
@@ -58,12 +66,11 @@ def read(content):
     # "ERROR: In file, line n", then "class (address): text" or text. Truncated files give a generic
     # warning that begins with "Error"; other warnings are not in the way of the data.
     entries = re.split(r"(ERROR|(?:Generic )?Warning): In .*\s", problems)
-    for kind, text in zip(entries[1::2], entries[2::2]):
+    for level, text in zip(entries[1::2], entries[2::2]):
         text = re.sub(r"^\s*\w+ \(\w+\): ", "", text)
-        if kind == "ERROR" or text.startswith("Error"):
+        if level == "ERROR" or text.startswith("Error"):
             raise ValueError(text.replace(path, content.path))
-    mesh = reader.GetOutput()
-    return _without_strips(mesh) if mesh.IsA("vtkPolyData") and mesh.GetNumberOfStrips() else mesh
+    return reader.GetOutput()
 
 
 def _rows(cells):
