@@ -8,6 +8,7 @@ import os
 
 from .._threads import get_number_of_threads, set_number_of_threads
 from .inputs import ArgumentProblem, read_surfaces
+from .signals import ended_by_signals
 
 
 def run(arguments, report, work):
@@ -99,7 +100,7 @@ def _run_part(arguments, work, pairs, threads):
     arguments = _changed(arguments, quiet=True, jobs=1)
     report = Report(arguments)
     files, error = [], None
-    with report.collecting_warnings():
+    with ended_by_signals(), report.collecting_warnings():
         read_surfaces(arguments)
         try:
             for facts in _one_by_one(arguments, report, work, pairs):

@@ -52,7 +52,7 @@ def distance(arguments, report):
         raise inputs.ArgumentProblem("the sources are " + (
             "missing" if arguments.starts is None else "both SOURCES and --from")
             + "; allowed: one of SOURCES and --from")
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, lengths=True)
     with report.timed("read"):
         sets, numbers, names = _read_sources(arguments, surface, report)
         speed = None
@@ -133,7 +133,7 @@ def add_derivatives(commands):
 
 
 def derivatives(arguments, report):
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, lengths=True)
     with report.timed("read"):
         _, data, names = inputs.read_values(arguments.data, surface, tables=False)
     word = arguments.quantity.capitalize()

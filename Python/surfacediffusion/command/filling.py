@@ -84,7 +84,7 @@ def add_interpolate(commands):
 
 
 def interpolate(arguments, report):
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, lengths=True)
     if arguments.error is not None:
         check_output_folder(arguments.error)
     with report.timed("read"):

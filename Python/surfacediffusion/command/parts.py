@@ -117,7 +117,7 @@ def texture(arguments, report):
     surface = read_surface_for_output(arguments, report)
     if arguments.relief is None:
         inputs.refuse(arguments, ["--base", "--flank", "--overhang"], "without --relief", "both")
-    if is_for_printing(arguments):
+    if is_for_printing(arguments, surface):
         print_texture(arguments, surface, report)
         return
     inputs.refuse(arguments, ["--maximum-triangles"], "for values at the vertices", "for parts")
