@@ -86,6 +86,18 @@ class TestData(unittest.TestCase):
             self.assertIn("/numpy/", run.stderr)
 
 
+class Host(unittest.TestCase):
+
+    def test_an_unknown_host_is_an_error_that_names_the_allowed_ones(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for host in ("Foo", "paraview", "None;VTK"):
+                run = subprocess.run(["cmake", "-S", SOURCE, "-B", folder, f"-DSURFACEDIFFUSION_HOST={host}"],
+                                     capture_output=True, text=True)
+                self.assertNotEqual(run.returncode, 0, host)
+                self.assertIn(f"SURFACEDIFFUSION_HOST is {host}; allowed: ParaView, VTK, None",
+                              " ".join(run.stderr.split()))
+
+
 class Checks(unittest.TestCase):
 
     def test_each_check_has_passed_since_the_last_release(self):
