@@ -260,7 +260,7 @@ TEST(DistanceFilter, ArrivalTimesFollowTheDirection)
   filter->Update();
   EXPECT_NEAR(At(filter, 21 * 5 + 9, "ArrivalTime"), 6.0, 1e-12);
   filter->SetMethodToHeat();
-  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal together with AlongSpeed 4"));
+  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal or 3 Automatic together with AlongSpeed 4"));
 }
 
 TEST(DistanceFilter, IsInfiniteWhereNoWayLeads)
@@ -433,7 +433,8 @@ TEST(DistanceFilter, NamesWhatIsNotAllowed)
   EXPECT_TRUE(
     Has(ErrorOf(filter), "SpeedArray is -1 at point 0; allowed: finite numbers, 0 or more"));
   filter->SetMethodToHeat();
-  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal together with SpeedArray"))
+  EXPECT_TRUE(
+    Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal or 3 Automatic together with SpeedArray"))
     << ErrorOf(filter);
   SetInputArray(filter, 8, "");
   filter->SetMaximumDistance(-2.0);
