@@ -106,8 +106,7 @@ DistanceMethod DistanceRun::FindMethod(DistanceMethod given, bool areTimes, doub
   {
     return given;
   }
-  const bool isExact =
-    !areTimes && work * ExactDistance::Seconds(this->MeshOfSolvers->NumberOfTriangles()) <= 1.0;
+  const bool isExact = !areTimes && ExactDistance::TakesAtMostASecond(*this->MeshOfSolvers, work);
   return isExact ? DistanceMethod::Exact : DistanceMethod::Eikonal;
 }
 

@@ -3,7 +3,6 @@
 #include "Core/Geodesics/EikonalDistance.h"
 
 #include "Core/Surface/EdgeRefinement.h"
-#include "Core/Surface/IntrinsicDelaunay.h"
 
 #include <Eigen/LU>
 
@@ -22,7 +21,7 @@ namespace
 constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// Squares whose sides are the longest edges that stay, of the area of a component.
-constexpr double SquaresOfComponent = 256.0;
+constexpr double SquaresOfComponent = 800.0;
 
 /// Refinement ends with this many triangles, or four times the given ones.
 constexpr Index EnoughTriangles = 50000;
@@ -107,18 +106,9 @@ EikonalDistance::EikonalDistance(std::shared_ptr<const TriangleMesh> mesh,
   , Fine(this->Mesh)
   , Shapes(std::move(shapes))
 {
-  const bool isFine = !this->Refine(positions, parallel, progress);
-  std::shared_ptr<const TriangleMesh> marched = isFine ? std::move(delaunay) : this->Fine;
-  if (!this->Shapes.empty())
-  {
-    marched = this->Fine;
-  }
-  else if (!isFine)
-  {
-    marched =
-      IntrinsicDelaunay(this->Fine, parallel, ProgressMonitor(), BoundaryEdges::Keep).Mesh();
-  }
-  this->Fronts = std::make_unique<const GeodesicDistance>(std::move(marched), this->Shapes);
+  const bool isOther = this->Refine(positions, parallel, progress) || !this->Shapes.empty();
+  this->Fronts = std::make_unique<const GeodesicDistance>(
+    isOther ? this->Fine : std::move(delaunay), this->Shapes);
 }
 
 /// Returns whether there are long edges.

@@ -4,6 +4,7 @@
 
 #include "Core/Geodesics/WindowFront.h"
 
+#include <cmath>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -27,9 +28,10 @@ GeodesicDistance::Arrival ExactDistance::Find(
   return { std::move(front.Times), std::move(front.Sources) };
 }
 
-bool ExactDistance::TakesAtMostASecond(const TriangleMesh& mesh)
+bool ExactDistance::TakesAtMostASecond(const TriangleMesh& mesh, double times)
 {
-  return mesh.NumberOfTriangles() <= 100000;
+  constexpr double inASecond = 100000.0;
+  return times * std::pow(mesh.NumberOfTriangles() / inASecond, 1.5) <= 1.0;
 }
 
 } // namespace SurfaceDiffusion

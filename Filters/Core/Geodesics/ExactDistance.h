@@ -39,8 +39,8 @@ public:
     const ProgressMonitor& progress = ProgressMonitor()) const;
 
   /// Whether Find() from one source over the whole mesh takes at most about a second, by the number of
-  /// triangles.
-  static bool TakesAtMostASecond(const TriangleMesh& mesh);
+  /// triangles; or as often as that.
+  static bool TakesAtMostASecond(const TriangleMesh& mesh, double times = 1.0);
 
 private:
   std::shared_ptr<const TriangleMesh> Mesh;
