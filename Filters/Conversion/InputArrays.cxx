@@ -146,7 +146,11 @@ LocatedArray InputArrays::Find(int index, const char* property, int components) 
   const int size = array->GetNumberOfComponents();
   if (components == AnyNumberOfComponents ? size < 1 : size != components)
   {
-    return report("has " + std::to_string(size) + " components; allowed: " +
+    const char* const name = array->GetName();
+    const std::string unset = choice.HasName()
+      ? std::string()
+      : "is not set, and the active array " + (name ? '"' + std::string(name) + "\" " : "");
+    return report(unset + "has " + std::to_string(size) + " components; allowed: " +
       (components == AnyNumberOfComponents ? std::string("1 or more")
                                            : std::to_string(components)));
   }

@@ -280,7 +280,7 @@ def run_kinds_of_input():
     points = producer(scattered())
     run("SurfaceInterpolationFilter", sphere_with_arrays(), "samples", PointsWithValues=points,
         ComputeError=1)
-    for method in ("Heat", "Eikonal"):
+    for method in ("Heat", "Eikonal", "Exact"):
         run("SurfaceDistanceFilter", sphere_with_arrays(), "sources" + method, Sources=points, Method=method,
             ComputeGradient=1)
     run("HarmonicMapFilter", noisy(sphere_with_arrays()), "moved", MoveVertices=1)

@@ -152,7 +152,7 @@ WORDS = {
     "TextureChemical": ("U1", "U2"), "SurfaceType": ("Automatic", "CAD", "Organic"),
     "Levels": ("Smooth", "Two"),
     "Method": ("PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints"),
-    "vtkSurfaceDistanceFilter Method": ("Heat", "Eikonal"),
+    "vtkSurfaceDistanceFilter Method": ("Heat", "Eikonal", "Exact", "Automatic"),
     "PrincipalDirection": ("Minimum", "Maximum"), "Boundary": ("Natural", "Free"),
 }
 

@@ -133,7 +133,9 @@ class ArrayFinder:
             return Array()
         size = found.GetNumberOfComponents()
         if size < 1 if components == ANY else size != components:
-            problems.append(f"{label} has {size} components; allowed: "
+            unset = "" if choice.name else "is not set, and the active array " + (
+                f'"{found.GetName()}" ' if found.GetName() else "")
+            problems.append(f"{label} {unset}has {size} components; allowed: "
                             + ("1 or more" if components == ANY else str(components)))
             return Array()
         return Array(found, on_cells)

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geodesics/GeodesicWindow.h"
+
+#include <array>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+using Window = GeodesicWindow;
+
+/// Which of two windows is shorter in an interval.
+enum class Shorter
+{
+  First,
+  Second,
+  FirstThenSecond,
+  SecondThenFirst,
+  Unknown
+};
+
+struct Comparison
+{
+  Shorter Which;
+  double Change = 0.0; ///< where it changes
+};
+
+/// The lower bound of a function whose derivative is between -fall and rise, from its values at the
+/// ends of an interval.
+double LowerBound(double atBegin, double atEnd, double fall, double rise, double width)
+{
+  if (fall <= 0.0)
+  {
+    return atBegin;
+  }
+  if (rise <= 0.0)
+  {
+    return atEnd;
+  }
+  const double down = (atBegin - atEnd + rise * width) / (fall + rise);
+  return atBegin - fall * std::clamp(down, 0.0, width);
+}
+
+/// Where both distances are equal, between places where their difference has opposite signs.
+double FindChange(const Window& a, const Window& b, double begin, double end, double atBegin,
+  double atEnd, double tolerance)
+{
+  // False position with the weights of Illinois
+  int side = 0;
+  double x = begin;
+  for (int step = 0; step < 60; ++step)
+  {
+    x = begin + (end - begin) * (atBegin / (atBegin - atEnd));
+    const double difference = a.At(x) - b.At(x);
+    if (std::abs(difference) <= tolerance)
+    {
+      break;
+    }
+    if ((difference > 0.0) == (atBegin > 0.0))
+    {
+      begin = x;
+      atBegin = difference;
+      atEnd *= side == 1 ? 0.5 : 1.0;
+      side = 1;
+    }
+    else
+    {
+      end = x;
+      atEnd = difference;
+      atBegin *= side == -1 ? 0.5 : 1.0;
+      side = -1;
+    }
+  }
+  return x;
+}
+
+Comparison Compare(const Window& a, const Window& b, double begin, double end)
+{
+  const auto at = [](const Window& w, double x) {
+    return x == w.Begin ? w.AtBegin : x == w.End ? w.AtEnd : w.At(x);
+  };
+  const double aBegin = at(a, begin), aEnd = at(a, end), bBegin = at(b, begin), bEnd = at(b, end);
+  const double atBegin = aBegin - bBegin, atEnd = aEnd - bEnd;
+  if ((atBegin < 0.0 && atEnd > 0.0) || (atBegin > 0.0 && atEnd < 0.0))
+  {
+    constexpr double roundOff = 1e-15;
+    return { atBegin < 0.0 ? Shorter::FirstThenSecond : Shorter::SecondThenFirst,
+      FindChange(a, b, begin, end, atBegin, atEnd, roundOff * aBegin) };
+  }
+  // Windows that are equally long but for round-off count as such. The derivatives of both
+  // distances grow along the edge.
+  const double tolerance = 1e-15 * (aBegin + aEnd);
+  const double fallOfA = a.SlopeAt(end, aEnd) - b.SlopeAt(begin, bBegin);
+  const double fallOfB = b.SlopeAt(end, bEnd) - a.SlopeAt(begin, aBegin);
+  if (atBegin <= 0.0 && atEnd <= 0.0 &&
+    LowerBound(-atBegin, -atEnd, fallOfA, fallOfB, end - begin) >= -tolerance)
+  {
+    return { Shorter::First };
+  }
+  if (atBegin >= 0.0 && atEnd >= 0.0 &&
+    LowerBound(atBegin, atEnd, fallOfB, fallOfA, end - begin) >= -tolerance)
+  {
+    return { Shorter::Second };
+  }
+  return { Shorter::Unknown };
+}
+
+bool ComeFromOnePlace(const Window& a, const Window& b)
+{
+  constexpr double roundOff = 2e-13;
+  if (a.Source != b.Source || a.IsStrip != b.IsStrip)
+  {
+    return false;
+  }
+  const double scale = a.IsStrip ? 1.0 : a.AtEnd - a.Start;
+  return std::abs(a.Start - b.Start) <= (a.IsStrip ? roundOff * (a.AtEnd + a.End) : 0.0) &&
+    std::abs(a.X - b.X) <= roundOff * scale && std::abs(a.Y - b.Y) <= roundOff * scale;
+}
+
+} // namespace
+
+void KeepShortestWindows(std::vector<Window>& windows, double length)
+{
+  if (windows.size() < 2)
+  {
+    return;
+  }
+  const double least = 1e-14 * length;
+  const auto before = [](const Window& a, const Window& b) { return a.Begin < b.Begin; };
+  std::sort(windows.begin(), windows.end(), before);
+  thread_local std::vector<Window> kept, later;
+  kept.clear();
+  later.clear();
+  const auto insert = [&](const Window& w)
+  {
+    if (w.End - w.Begin > least)
+    {
+      // `later` is a stack: the next window is its last
+      auto place = later.end();
+      while (place != later.begin() && (place - 1)->Begin < w.Begin)
+      {
+        --place;
+      }
+      later.insert(place, w);
+    }
+  };
+  for (std::size_t next = 0; next < windows.size() || !later.empty();)
+  {
+    Window w = windows[0];
+    if (later.empty() || (next < windows.size() && windows[next].Begin <= later.back().Begin))
+    {
+      w = windows[next++];
+    }
+    else
+    {
+      w = later.back();
+      later.pop_back();
+    }
+    while (true)
+    {
+      if (kept.empty())
+      {
+        kept.push_back(w);
+        break;
+      }
+      Window& last = kept.back();
+      if (w.Begin <= last.End + least && ComeFromOnePlace(last, w))
+      {
+        if (w.End > last.End)
+        {
+          last.End = w.End;
+          last.AtEnd = w.AtEnd;
+        }
+        break;
+      }
+      const double end = std::min(last.End, w.End);
+      if (end - w.Begin <= least)
+      {
+        kept.push_back(w);
+        break;
+      }
+      const Comparison comparison = Compare(last, w, w.Begin, end);
+      if (comparison.Which == Shorter::Unknown)
+      {
+        kept.push_back(w);
+        break;
+      }
+      if (comparison.Which == Shorter::First || comparison.Which == Shorter::FirstThenSecond)
+      {
+        // w gives way at its beginning
+        const bool whole = comparison.Which == Shorter::First;
+        if (!whole && last.End > w.End)
+        {
+          Window rest = last;
+          rest.SetBegin(w.End);
+          insert(rest);
+        }
+        if (!whole)
+        {
+          last.SetEnd(comparison.Change);
+        }
+        w.SetBegin(whole ? end : comparison.Change);
+        insert(w);
+        break;
+      }
+      // `last` gives way at the beginning of w, and goes on where w is not shorter.
+      const double until = comparison.Which == Shorter::Second ? end : comparison.Change;
+      if (last.End - until > least)
+      {
+        Window rest = last;
+        rest.SetBegin(until);
+        insert(rest);
+      }
+      if (comparison.Which == Shorter::SecondThenFirst)
+      {
+        if (w.End > end)
+        {
+          Window rest = w;
+          rest.SetBegin(end);
+          insert(rest);
+        }
+        w.SetEnd(until);
+      }
+      if (w.Begin - last.Begin > least)
+      {
+        last.SetEnd(w.Begin);
+        if (w.End - w.Begin > least)
+        {
+          kept.push_back(w);
+        }
+        break;
+      }
+      kept.pop_back();
+    }
+  }
+  windows.swap(kept);
+}
+
+} // namespace SurfaceDiffusion
