@@ -5,6 +5,7 @@
 import gzip
 import itertools
 import os
+import re
 import shutil
 import signal
 import struct
@@ -13,6 +14,7 @@ import sys
 import time
 import unittest
 import warnings
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -106,6 +108,28 @@ class VTK(ForeignTest):
                 (3, 6, 9, 1000), (-3, 6, 9, 12), (3, 6, 9, 10**15))]
             wrong.append((end, xml(corners=[0, 1, 99, *CORNERS[3:]], kind=kind)))
         self.refused_all(wrong, "(damaged|a face refers)")
+
+    def compressed(self, offset="{}", blocks=1, size=1024, last=48, packed=None):
+        """The arrays of xml(), compressed behind the file; the numbers are those of the coordinates."""
+        given = [np.array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1], "<f4"), np.array(CORNERS, "<i8"),
+                 np.array([3, 6, 9, 12], "<i8")]
+        head, body = xml(), b""
+        head = head.replace('header_type', 'compressor="vtkZLibDataCompressor" header_type')
+        for k, (array, kind) in enumerate(zip(given, ("Float32", "Int64", "Int64"))):
+            place = offset.format(len(body)) if k == 0 else len(body)
+            head = re.sub(rf'(<DataArray type="{kind}"[^>]*) format="ascii">[^<]*<', rf'\1 format="appended" offset="{place}"><',
+                          head, count=1)
+            zipped = zlib.compress(array.tobytes())
+            numbers = (blocks, size, last, packed or len(zipped)) if k == 0 else (1, 1024, array.nbytes, len(zipped))
+            body += struct.pack("<4I", *numbers) + zipped
+        return head.replace("</VTKFile>", '<AppendedData encoding="raw">_').encode() + body + b"</AppendedData></VTKFile>"
+
+    def test_blocks_beyond_the_file_are_refused_before_vtk_reads_them(self):
+        self.assertIn("4 points, 4 faces", self.succeed("info", self.write("a.vtp", self.compressed())))
+        self.refused_all([(".vtp", content) for content in (
+            self.compressed(blocks=0), self.compressed(last=2000), self.compressed(size=2**31), self.compressed(packed=10**9),
+            self.compressed(blocks=2**30), self.compressed("1e9"), self.compressed("99999999"), self.compressed("-5"))],
+            "damaged VTK XML file: ")
 
     def test_grids_of_triangles_are_surfaces_and_stay_grids(self):
         """As meshio writes all surfaces."""
