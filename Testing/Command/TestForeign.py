@@ -445,6 +445,11 @@ class STL(ForeignTest):
             warnings.simplefilter("ignore")
             surface = read_surface(self.rounded(POINTS, half, 1e-6))
         self.assertEqual(len(surface.points), len(np.unique(half)))
+        far = np.concatenate([POINTS, 1e8 + POINTS[:3]])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            surface = read_surface(self.rounded(far, np.concatenate([half, [[N, N + 1, N + 2]]]), 1e-6))
+        self.assertEqual(len(surface.points), len(np.unique(half)) + 3)
         thin = np.array([[0, 0, 0], [1, 0, 0], [1, 1e-6, 0], [0, 1e-6, 0], [0, 1, 0]], float)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
