@@ -466,9 +466,10 @@ class FreeSurfer(ForeignTest):
         quads = [[4 * i + j, 4 * i + 4 + j, 4 * i + 5 + j, 4 * i + 1 + j] for i in range(3) for j in range(3)]
         self.write("lh.orig", b"\xff\xff\xff" + number(16) + number(9) + (points * 100).astype(">i2").tobytes()
                    + b"".join(number(corner) for face in quads for corner in face))
-        self.assertIn("freesurfer, 16 points, 18 faces", self.succeed("info", "lh.orig"))
+        said = "lh.orig: quadrangles, which are read, and written, as two triangles each"
+        self.assertIn("freesurfer, 16 points, 18 faces", self.warned(said, "info", "lh.orig"))
         np.save("v.npy", np.arange(16.0))
-        self.succeed("smooth", "lh.orig", "v.npy", 2, "o.npy")
+        self.warned(said, "smooth", "lh.orig", "v.npy", 2, "o.npy")
         self.assertIn("curv", self.succeed("info", samples.write_curv("lh.curv")))
 
     def test_surfaces_in_text_are_read_and_written(self):
@@ -584,4 +585,4 @@ class Sentences(ForeignTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)
