@@ -5,6 +5,7 @@
 import gzip
 import itertools
 import os
+import re
 import shutil
 import signal
 import struct
@@ -13,6 +14,7 @@ import sys
 import time
 import unittest
 import warnings
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -106,6 +108,28 @@ class VTK(ForeignTest):
                 (3, 6, 9, 1000), (-3, 6, 9, 12), (3, 6, 9, 10**15))]
             wrong.append((end, xml(corners=[0, 1, 99, *CORNERS[3:]], kind=kind)))
         self.refused_all(wrong, "(damaged|a face refers)")
+
+    def compressed(self, offset="{}", blocks=1, size=1024, last=48, packed=None):
+        """The arrays of xml(), compressed behind the file; the numbers are those of the coordinates."""
+        given = [np.array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1], "<f4"), np.array(CORNERS, "<i8"),
+                 np.array([3, 6, 9, 12], "<i8")]
+        head, body = xml(), b""
+        head = head.replace('header_type', 'compressor="vtkZLibDataCompressor" header_type')
+        for k, (array, kind) in enumerate(zip(given, ("Float32", "Int64", "Int64"))):
+            place = offset.format(len(body)) if k == 0 else len(body)
+            head = re.sub(rf'(<DataArray type="{kind}"[^>]*) format="ascii">[^<]*<', rf'\1 format="appended" offset="{place}"><',
+                          head, count=1)
+            zipped = zlib.compress(array.tobytes())
+            numbers = (blocks, size, last, packed or len(zipped)) if k == 0 else (1, 1024, array.nbytes, len(zipped))
+            body += struct.pack("<4I", *numbers) + zipped
+        return head.replace("</VTKFile>", '<AppendedData encoding="raw">_').encode() + body + b"</AppendedData></VTKFile>"
+
+    def test_blocks_beyond_the_file_are_refused_before_vtk_reads_them(self):
+        self.assertIn("4 points, 4 faces", self.succeed("info", self.write("a.vtp", self.compressed())))
+        self.refused_all([(".vtp", content) for content in (
+            self.compressed(blocks=0), self.compressed(last=2000), self.compressed(size=2**31), self.compressed(packed=10**9),
+            self.compressed(blocks=2**30), self.compressed("1e9"), self.compressed("99999999"), self.compressed("-5"))],
+            "damaged VTK XML file: ")
 
     def test_grids_of_triangles_are_surfaces_and_stay_grids(self):
         """As meshio writes all surfaces."""
@@ -421,6 +445,11 @@ class STL(ForeignTest):
             warnings.simplefilter("ignore")
             surface = read_surface(self.rounded(POINTS, half, 1e-6))
         self.assertEqual(len(surface.points), len(np.unique(half)))
+        far = np.concatenate([POINTS, 1e8 + POINTS[:3]])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            surface = read_surface(self.rounded(far, np.concatenate([half, [[N, N + 1, N + 2]]]), 1e-6))
+        self.assertEqual(len(surface.points), len(np.unique(half)) + 3)
         thin = np.array([[0, 0, 0], [1, 0, 0], [1, 1e-6, 0], [0, 1e-6, 0], [0, 1, 0]], float)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -437,9 +466,10 @@ class FreeSurfer(ForeignTest):
         quads = [[4 * i + j, 4 * i + 4 + j, 4 * i + 5 + j, 4 * i + 1 + j] for i in range(3) for j in range(3)]
         self.write("lh.orig", b"\xff\xff\xff" + number(16) + number(9) + (points * 100).astype(">i2").tobytes()
                    + b"".join(number(corner) for face in quads for corner in face))
-        self.assertIn("freesurfer, 16 points, 18 faces", self.succeed("info", "lh.orig"))
+        said = "lh.orig: quadrangles, which are read, and written, as two triangles each"
+        self.assertIn("freesurfer, 16 points, 18 faces", self.warned(said, "info", "lh.orig"))
         np.save("v.npy", np.arange(16.0))
-        self.succeed("smooth", "lh.orig", "v.npy", 2, "o.npy")
+        self.warned(said, "smooth", "lh.orig", "v.npy", 2, "o.npy")
         self.assertIn("curv", self.succeed("info", samples.write_curv("lh.curv")))
 
     def test_surfaces_in_text_are_read_and_written(self):
@@ -555,4 +585,4 @@ class Sentences(ForeignTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

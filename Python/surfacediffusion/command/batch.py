@@ -71,9 +71,16 @@ def _run_in_processes(arguments, report, work, pairs):
     threads = max(1, get_number_of_threads() // jobs)
     # New processes, since threads of this one would be lost in a fork.
     context = multiprocessing.get_context("spawn")
+    others = multiprocessing.active_children()
     with concurrent.futures.ProcessPoolExecutor(jobs, mp_context=context) as pool:
-        tasks = [pool.submit(_run_part, arguments, work, pairs[i::jobs], threads) for i in range(jobs)]
-        parts = [task.result() for task in tasks]
+        try:
+            tasks = [pool.submit(_run_part, arguments, work, pairs[i::jobs], threads) for i in range(jobs)]
+            parts = [task.result() for task in tasks]
+        except KeyboardInterrupt:
+            for process in multiprocessing.active_children():
+                if process not in others:
+                    process.terminate()
+            raise
     for part in parts:
         for text in part["warnings"]:
             if text not in report.warnings:

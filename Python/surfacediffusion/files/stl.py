@@ -10,7 +10,7 @@ import re
 import numpy as np
 
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-_ROUNDING = 1e-5  # of the diagonal: corners that are no more apart are one vertex
+_ROUNDING = 1e-5  # of the diagonal: corners that are no more apart are one vertex, or 1 % of open edges
 _NEIGHBOURS = 200  # of a point along a line, on average, which bounds the search
 _HEADER = 84  # 80 bytes of text and the number of triangles
 
@@ -29,9 +29,14 @@ def read(data: bytes):
 
 def _join(points, faces):
     """The same surface without the gaps of rounding between ends of open edges."""
-    ends = np.unique(_open_edges(faces))
+    edges = _open_edges(faces)
+    if not len(edges):
+        return points, faces, 0.0
     with np.errstate(over="ignore", invalid="ignore"):
-        pairs = _near_pairs(points, ends, _ROUNDING * np.linalg.norm(np.ptp(points.astype(float), axis=0)))
+        # A facet far away makes the diagonal long, but not these edges.
+        lengths = np.linalg.norm(np.diff(points[edges].astype(float), axis=1), axis=2)
+        distance = min(_ROUNDING * np.linalg.norm(np.ptp(points.astype(float), axis=0)), 0.01 * np.median(lengths))
+        pairs = _near_pairs(points, np.unique(edges), distance)
     pairs = pairs[~np.isin(_key(pairs), _key(_edges(faces)))]  # which would take a triangle's edge away
     vertex = np.arange(len(points))
     while len(pairs):

@@ -101,21 +101,29 @@ class _Xml:
         """The bytes that are announced before the bytes of an array."""
         if form == "binary":
             start, raw = self._end_of_tag(), False
-        elif form == "appended" and self.appended and re.fullmatch(r"\s*\+?\d{1,18}\s*", place):
-            start, raw = self.appended.end() + int(place), b'"raw"' in self.appended[0]
+        elif form == "appended" and self.appended:
+            start, raw = self.appended.end() + _count(place, "offset"), b'"raw"' in self.appended[0]
         else:
             return
-        needed = self.number.itemsize * (2 if self.compressor else 1)
-        head = self.data[start:start + 200]
+        sizes = self._lengths(start, raw, 3 if self.compressor else 1)
+        if self.compressor and sizes:
+            # Blocks of a compressed array have a length each but the last one, and lengths of their bytes.
+            blocks, size, last = sizes
+            packed = self._lengths(start, raw, 3 + blocks)[3:] if blocks <= len(self.data) else [len(self.data) + 1]
+            if blocks * size > self.room or last > size * (blocks > 0) or sum(packed) > len(self.data):
+                raise ValueError(f"an array announces {blocks} blocks of {size} bytes, the last of {last}, the file "
+                                 f"has {len(self.data)}")
+        elif sizes and sizes[0] > len(self.data):
+            raise ValueError(f"an array announces {sizes[0]} bytes, the file has {len(self.data)}")
+
+    def _lengths(self, start, raw, count):
+        """So many numbers before an array; none if the file ends, which VTK says."""
+        size = count * self.number.itemsize
+        head = self.data[start:start + size]
         if not raw:
-            head = base64.b64decode(re.sub(rb"\s", b"", head)[:(needed + 2) // 3 * 4])
-        if len(head) < needed:
-            return  # VTK says so
-        sizes = np.frombuffer(head, self.number, needed // self.number.itemsize).tolist()
-        # Blocks of a compressed array have a length each.
-        if sizes[0] > len(self.data) or np.prod(sizes, dtype=float) > self.room:
-            raise ValueError(f"an array announces {' blocks of '.join(map(str, sizes))} bytes, the file has "
-                             f"{len(self.data)}")
+            digits = (size + 2) // 3 * 4
+            head = base64.b64decode(re.sub(rb"\s", b"", self.data[start:start + digits + 200])[:digits])
+        return np.frombuffer(head, self.number, count).tolist() if len(head) >= size else []
 
     def file_of_offsets(self):
         """A file without points and cells, whose arrays are the offsets of the cells of this one."""
