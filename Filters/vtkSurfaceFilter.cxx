@@ -57,6 +57,20 @@ bool HasVisibleCells(vtkPolyData* data)
       [](unsigned char flag) { return (flag & absent) == 0; });
 }
 
+/// When a filter, its inputs and their blocks were modified. own: that of the filter.
+std::vector<vtkMTimeType> FindTimes(vtkAlgorithm* filter, vtkMTimeType own)
+{
+  std::vector<vtkMTimeType> times = { own };
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (vtkDataObject* const data : ListLeaves(filter->GetInputDataObject(port, 0)))
+    {
+      times.push_back(data->GetMTime());
+    }
+  }
+  return times;
+}
+
 } // namespace
 
 vtkSurfaceFilter::vtkSurfaceFilter()
@@ -310,6 +324,13 @@ int vtkSurfaceFilter::RequestData(
 {
   std::vector<SurfacePiece> pieces =
     CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
+  // Asked for another time or piece of the same input, the update would fail again.
+  if (this->Private->HasFailed &&
+    !Processes(this->Controller)
+       .Any(this->Private->FailedWith != FindTimes(this, this->Superclass::GetMTime())))
+  {
+    return this->EndUpdate();
+  }
   this->Private->HasFailed = false;
   this->Private->Numbers.Set({});
   const std::string alone = DescribeLonePiece(inputs, this->Controller, this->HasWholeSurface);
@@ -452,19 +473,20 @@ int vtkSurfaceFilter::EndUpdate()
   if (failed)
   {
     this->Private->QuietExecutive(this->GetExecutive());
+    this->Private->FailedWith = FindTimes(this, this->Superclass::GetMTime());
   }
   return failed ? 0 : 1;
 }
 
 vtkMTimeType vtkSurfaceFilter::GetMTime()
 {
-  if (this->Private->HasFailed)
+  const vtkMTimeType own = this->Superclass::GetMTime();
+  if (!this->Private->HasFailed)
   {
-    // The pipeline takes the output for up to date even though the update has failed.
-    this->Private->FailureTime.Modified();
-    return this->Private->FailureTime.GetMTime();
+    return own;
   }
-  return this->Superclass::GetMTime();
+  const std::vector<vtkMTimeType> times = FindTimes(this, own);
+  return *std::max_element(times.begin(), times.end());
 }
 
 void vtkSurfaceFilter::ReleaseCache()

@@ -84,6 +84,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self._warnings: list[str] = []  # of this class, in the present update
         self._of_surfaces: list[str] = []
         self._quiet = 0  # no observer
+        self._failed_with: list[int] | None = None  # the times of an update that has failed
         choice = self.DEFAULT_CHOICE
         if choice is not None:
             self.SetInputArrayToProcess(
@@ -158,6 +159,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         for extra in made[1:]:
             extra.Initialize()
         parts = copy_structure(self._first_input(inputs), made[0])
+        if self._failed_with == self._find_times(inputs, parts):  # asked for another time or piece
+            self._quiet_executive()
+            return 0
         self.shapes.begin_update()
         refinement = Refinement(self.shapes)
         threads = _core.number_of_threads()
@@ -187,10 +191,16 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                 extra.Initialize()
         if self.GetReleaseDataFlag() or vtkDataObject.GetGlobalReleaseDataFlag():
             self.ReleaseCache()
+        self._failed_with = self._find_times(inputs, parts) if failure else None
         if failure:
             self._report_error(failure)
             return 0
         return 1
+
+    def _find_times(self, inputs: Any, parts: Parts) -> list[int]:
+        """When the filter and its inputs were modified."""
+        given = [block.input for block in parts.blocks] + [self._second_input(inputs)]
+        return [self.GetMTime()] + [data.GetMTime() for data in given if data is not None]
 
     def ReleaseCache(self) -> None:
         """Free what is kept from one update to the next."""
