@@ -7,6 +7,7 @@
 #include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Distributed/CellFlags.h"
+#include "Distributed/PieceArrays.h"
 #include "Distributed/SurfacePieces.h"
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
@@ -339,6 +340,17 @@ int vtkSurfaceFilter::RequestData(
     this->ReportError(alone);
     return this->EndUpdate();
   }
+  const Processes processes(this->Controller);
+  const std::string disagreement = FindDisagreement(processes, this, pieces);
+  if (!disagreement.empty())
+  {
+    this->Private->HasFailed = true;
+    if (processes.Rank() == 0)
+    {
+      this->ReportError(disagreement);
+    }
+    return this->EndUpdate();
+  }
   this->Private->Input = DescribeInput(vtkDataObject::GetData(inputs[0]));
   const auto toBlocks = [&names = this->Private->Input.SurfaceNames](
                           const std::vector<SurfacePiece>& surfaces)
@@ -356,7 +368,6 @@ int vtkSurfaceFilter::RequestData(
   {
     return this->EndUpdate();
   }
-  const Processes processes(this->Controller);
   const PieceSummary summary =
     processes.Count() > 1 ? SummarizePieces(processes, pieces) : PieceSummary();
   this->Private->Processes.reset();

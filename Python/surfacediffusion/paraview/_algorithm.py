@@ -15,7 +15,8 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
-from ._fields import BY_INDEX, ArrayFinder, Choice, Fields, join_sentences, make_core
+from ._fields import (
+    BY_INDEX, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement, mean_edge_length
 from ._surfaces import ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure
@@ -227,6 +228,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         controller = vtkMultiProcessController.GetGlobalController()
         if controller is not None and controller.GetNumberOfProcesses() > 1:
             return "ParaView runs in several processes; allowed: one (the plugin in C++ works in several)"
+        if parts.in_pieces:
+            disagreement = find_disagreement(self.choices, parts.blocks)
+            if disagreement:
+                return disagreement
         problems = self._check_own()
         given = [block for block in parts.blocks if _has_polygons(block)]
         if given and not problems:
