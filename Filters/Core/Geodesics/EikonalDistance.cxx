@@ -21,7 +21,7 @@ namespace
 constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// Squares whose sides are the longest edges that stay, of the area of a component.
-constexpr double SquaresOfComponent = 800.0;
+constexpr double SquaresOfComponent = 1500.0;
 
 /// Refinement ends with this many triangles, or four times the given ones.
 constexpr Index EnoughTriangles = 50000;

@@ -13,7 +13,7 @@ namespace SurfaceDiffusion
 /// GeodesicDistance from pieces of sources, on any surface. Where triangles are few, their edges are
 /// bisected first, which does not change the surface: fronts that meet behind a vertex, and an intrinsic
 /// Delaunay triangulation whose triangles have a vertex at two corners, would make distances far too
-/// short. Edges are long above a 28th of the root of the area of their component. Surfaces without such
+/// short. Edges are long above a 39th of the root of the area of their component. Surfaces without such
 /// edges stay as they are.
 class EikonalDistance
 {

@@ -17,9 +17,9 @@ namespace
 
 constexpr double Never = std::numeric_limits<double>::infinity();
 
-/// The angle above 2 pi from which on a vertex is a saddle, in radians. Ways of fine surfaces, whose
-/// angles differ less, may go along edges without reason.
-constexpr double SmallestSaddle = 0.1;
+/// The angle above 2 pi from which on a vertex is a saddle, in radians. On fine surfaces, whose angles
+/// differ less, ways along edges are mostly those of the triangulation.
+constexpr double SmallestSaddle = 0.5;
 
 /// What a time has to fall by, relatively, so that the front starts again: more than round-off. Where the
 /// lengths of an edge differ much between its two triangles, times may fall by less and less without an
