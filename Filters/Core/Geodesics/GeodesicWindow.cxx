@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geodesics/GeodesicWindow.h"
 
-#include <array>
-
 namespace SurfaceDiffusion
 {
 
@@ -77,31 +75,60 @@ double FindChange(const Window& a, const Window& b, double begin, double end, do
   return x;
 }
 
-Comparison Compare(const Window& a, const Window& b, double begin, double end)
+/// A window at two places of the edge.
+struct Piece
 {
-  const auto at = [](const Window& w, double x) {
-    return x == w.Begin ? w.AtBegin : x == w.End ? w.AtEnd : w.At(x);
-  };
-  const double aBegin = at(a, begin), aEnd = at(a, end), bBegin = at(b, begin), bEnd = at(b, end);
-  const double atBegin = aBegin - bBegin, atEnd = aEnd - bEnd;
+  const Window& Of;
+  double AtBegin, AtEnd;
+
+  Piece(const Window& window, double begin, double end)
+    : Of(window)
+    , AtBegin(begin == window.Begin ? window.AtBegin : window.At(begin))
+    , AtEnd(end == window.End ? window.AtEnd : window.At(end))
+  {
+  }
+};
+
+/// Whether a is nowhere longer than b by more than the tolerance. It is not at the ends.
+bool IsNowhereLonger(
+  const Piece& a, const Piece& b, double begin, double end, double tolerance, int bisections)
+{
+  // The derivatives of both distances grow along the edge.
+  const double fall = a.Of.SlopeAt(end, a.AtEnd) - b.Of.SlopeAt(begin, b.AtBegin);
+  const double rise = b.Of.SlopeAt(end, b.AtEnd) - a.Of.SlopeAt(begin, a.AtBegin);
+  if (LowerBound(b.AtBegin - a.AtBegin, b.AtEnd - a.AtEnd, fall, rise, end - begin) >= -tolerance)
+  {
+    return true;
+  }
+  const double middle = 0.5 * (begin + end);
+  if (bisections == 0 || a.Of.At(middle) > b.Of.At(middle) + tolerance)
+  {
+    return false;
+  }
+  return IsNowhereLonger(Piece(a.Of, begin, middle), Piece(b.Of, begin, middle), begin, middle,
+           tolerance, bisections - 1) &&
+    IsNowhereLonger(
+      Piece(a.Of, middle, end), Piece(b.Of, middle, end), middle, end, tolerance, bisections - 1);
+}
+
+Comparison Compare(const Window& first, const Window& second, double begin, double end)
+{
+  constexpr double roundOff = 1e-14;
+  constexpr int bisections = 6;
+  const Piece a(first, begin, end), b(second, begin, end);
+  const double tolerance = roundOff * a.AtBegin;
+  const double favour = tolerance * (int(second.IsPast) - int(first.IsPast));
+  const double atBegin = a.AtBegin - b.AtBegin + favour, atEnd = a.AtEnd - b.AtEnd + favour;
   if ((atBegin < 0.0 && atEnd > 0.0) || (atBegin > 0.0 && atEnd < 0.0))
   {
-    constexpr double roundOff = 1e-15;
     return { atBegin < 0.0 ? Shorter::FirstThenSecond : Shorter::SecondThenFirst,
-      FindChange(a, b, begin, end, atBegin, atEnd, roundOff * aBegin) };
+      FindChange(first, second, begin, end, atBegin, atEnd, tolerance) };
   }
-  // Windows that are equally long but for round-off count as such. The derivatives of both
-  // distances grow along the edge.
-  const double tolerance = 1e-15 * (aBegin + aEnd);
-  const double fallOfA = a.SlopeAt(end, aEnd) - b.SlopeAt(begin, bBegin);
-  const double fallOfB = b.SlopeAt(end, bEnd) - a.SlopeAt(begin, aBegin);
-  if (atBegin <= 0.0 && atEnd <= 0.0 &&
-    LowerBound(-atBegin, -atEnd, fallOfA, fallOfB, end - begin) >= -tolerance)
+  if (atBegin <= 0.0 && atEnd <= 0.0 && IsNowhereLonger(a, b, begin, end, tolerance, bisections))
   {
     return { Shorter::First };
   }
-  if (atBegin >= 0.0 && atEnd >= 0.0 &&
-    LowerBound(atBegin, atEnd, fallOfB, fallOfA, end - begin) >= -tolerance)
+  if (atBegin >= 0.0 && atEnd >= 0.0 && IsNowhereLonger(b, a, begin, end, tolerance, bisections))
   {
     return { Shorter::Second };
   }
@@ -111,7 +138,7 @@ Comparison Compare(const Window& a, const Window& b, double begin, double end)
 bool ComeFromOnePlace(const Window& a, const Window& b)
 {
   constexpr double roundOff = 2e-13;
-  if (a.Source != b.Source || a.IsStrip != b.IsStrip)
+  if (a.Source != b.Source || a.IsStrip != b.IsStrip || a.IsPast != b.IsPast)
   {
     return false;
   }
@@ -122,16 +149,21 @@ bool ComeFromOnePlace(const Window& a, const Window& b)
 
 } // namespace
 
-void KeepShortestWindows(std::vector<Window>& windows, double length)
+void KeepShortestWindows(std::vector<Window>& windows, double length, WindowBuffers& buffers)
 {
-  if (windows.size() < 2)
+  const double least = 1e-14 * length;
+  const auto before = [](const Window& a, const Window& b) { return a.Begin < b.Begin; };
+  if (!std::is_sorted(windows.begin(), windows.end(), before))
+  {
+    std::sort(windows.begin(), windows.end(), before);
+  }
+  const auto meet = [&](const Window& a, const Window& b)
+  { return b.Begin < a.End - least || (b.Begin < a.End + least && ComeFromOnePlace(a, b)); };
+  if (std::adjacent_find(windows.begin(), windows.end(), meet) == windows.end())
   {
     return;
   }
-  const double least = 1e-14 * length;
-  const auto before = [](const Window& a, const Window& b) { return a.Begin < b.Begin; };
-  std::sort(windows.begin(), windows.end(), before);
-  thread_local std::vector<Window> kept, later;
+  auto& [kept, later] = buffers;
   kept.clear();
   later.clear();
   const auto insert = [&](const Window& w)

@@ -24,6 +24,7 @@ struct GeodesicWindow
   double AtBegin, AtEnd; ///< the distances at the ends of the interval
   Index Source;
   bool IsStrip;
+  bool IsPast; ///< it has gone over the triangle
 
   /// The distance at the place x of the edge.
   double At(double x) const
@@ -83,10 +84,18 @@ struct GeodesicWindow
   }
 };
 
+/// Memory for KeepShortestWindows().
+struct WindowBuffers
+{
+  std::vector<GeodesicWindow> Kept, Later;
+};
+
 /// Cut windows on one edge, of the given length, so that where several of them overlap the one with
 /// the shortest distance stays, and sort them along the edge. Windows that end at each other and
 /// come from one place of the plane become one. Nothing that is shortest is lost: where it is not
-/// certain which one is shorter, both stay.
-void KeepShortestWindows(std::vector<GeodesicWindow>& windows, double length);
+/// certain which one is shorter, both stay. Windows that are past stay where others are not shorter
+/// by more than round-off.
+void KeepShortestWindows(
+  std::vector<GeodesicWindow>& windows, double length, WindowBuffers& buffers);
 
 } // namespace SurfaceDiffusion
