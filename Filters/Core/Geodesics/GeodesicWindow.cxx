@@ -17,7 +17,7 @@ enum class Shorter
   Second,
   FirstThenSecond,
   SecondThenFirst,
-  Unknown
+  InTurns ///< it changes on both sides of a place
 };
 
 struct Comparison
@@ -26,20 +26,23 @@ struct Comparison
   double Change = 0.0; ///< where it changes
 };
 
-/// The lower bound of a function whose derivative is between -fall and rise, from its values at the
-/// ends of an interval.
-double LowerBound(double atBegin, double atEnd, double fall, double rise, double width)
+/// The place on the edge beside which the difference of two distances is even more or less, if there
+/// is one: it lies between the places, two at most, where both distances are equal.
+double PlaceBetweenChanges(const Window& a, const Window& b)
 {
-  if (fall <= 0.0)
+  if (a.IsStrip || b.IsStrip)
   {
-    return atBegin;
+    // Where the derivatives are the same: that of a strip is the same everywhere
+    const Window& point = a.IsStrip ? b : a;
+    const double slope = a.IsStrip ? a.X : b.X;
+    return point.IsStrip
+      ? point.Begin
+      : point.X + point.Y * slope / std::sqrt(std::max(0.0, 1.0 - slope * slope));
   }
-  if (rise <= 0.0)
-  {
-    return atEnd;
-  }
-  const double down = (atBegin - atEnd + rise * width) / (fall + rise);
-  return atBegin - fall * std::clamp(down, 0.0, width);
+  // Both distances are equal at roots of a polynomial of degree two; this is its extremum.
+  const double across = b.X - a.X, start = b.Start - a.Start;
+  const double square = (start - across) * (start + across);
+  return a.X + 0.5 * across * (1.0 + (a.Y - b.Y) * (a.Y + b.Y) / square);
 }
 
 /// Where both distances are equal, between places where their difference has opposite signs.
@@ -75,64 +78,33 @@ double FindChange(const Window& a, const Window& b, double begin, double end, do
   return x;
 }
 
-/// A window at two places of the edge.
-struct Piece
+/// roundOff: the part of the distance within which they count as equal; windows that are past are
+/// shorter then.
+Comparison Compare(const Window& a, const Window& b, double begin, double end, double roundOff)
 {
-  const Window& Of;
-  double AtBegin, AtEnd;
-
-  Piece(const Window& window, double begin, double end)
-    : Of(window)
-    , AtBegin(begin == window.Begin ? window.AtBegin : window.At(begin))
-    , AtEnd(end == window.End ? window.AtEnd : window.At(end))
-  {
-  }
-};
-
-/// Whether a is nowhere longer than b by more than the tolerance. It is not at the ends.
-bool IsNowhereLonger(
-  const Piece& a, const Piece& b, double begin, double end, double tolerance, int bisections)
-{
-  // The derivatives of both distances grow along the edge.
-  const double fall = a.Of.SlopeAt(end, a.AtEnd) - b.Of.SlopeAt(begin, b.AtBegin);
-  const double rise = b.Of.SlopeAt(end, b.AtEnd) - a.Of.SlopeAt(begin, a.AtBegin);
-  if (LowerBound(b.AtBegin - a.AtBegin, b.AtEnd - a.AtEnd, fall, rise, end - begin) >= -tolerance)
-  {
-    return true;
-  }
-  const double middle = 0.5 * (begin + end);
-  if (bisections == 0 || a.Of.At(middle) > b.Of.At(middle) + tolerance)
-  {
-    return false;
-  }
-  return IsNowhereLonger(Piece(a.Of, begin, middle), Piece(b.Of, begin, middle), begin, middle,
-           tolerance, bisections - 1) &&
-    IsNowhereLonger(
-      Piece(a.Of, middle, end), Piece(b.Of, middle, end), middle, end, tolerance, bisections - 1);
-}
-
-Comparison Compare(const Window& first, const Window& second, double begin, double end)
-{
-  constexpr double roundOff = 1e-14;
-  constexpr int bisections = 6;
-  const Piece a(first, begin, end), b(second, begin, end);
-  const double tolerance = roundOff * a.AtBegin;
-  const double favour = tolerance * (int(second.IsPast) - int(first.IsPast));
-  const double atBegin = a.AtBegin - b.AtBegin + favour, atEnd = a.AtEnd - b.AtEnd + favour;
+  const auto at = [](const Window& w, double x) {
+    return x == w.Begin ? w.AtBegin : x == w.End ? w.AtEnd : w.At(x);
+  };
+  const double aBegin = at(a, begin);
+  const double tolerance = roundOff * aBegin;
+  const double favour = tolerance * (int(b.IsPast) - int(a.IsPast));
+  const double atBegin = aBegin - at(b, begin) + favour, atEnd = at(a, end) - at(b, end) + favour;
   if ((atBegin < 0.0 && atEnd > 0.0) || (atBegin > 0.0 && atEnd < 0.0))
   {
     return { atBegin < 0.0 ? Shorter::FirstThenSecond : Shorter::SecondThenFirst,
-      FindChange(first, second, begin, end, atBegin, atEnd, tolerance) };
+      FindChange(a, b, begin, end, atBegin, atEnd, tolerance) };
   }
-  if (atBegin <= 0.0 && atEnd <= 0.0 && IsNowhereLonger(a, b, begin, end, tolerance, bisections))
+  const bool first = atBegin + atEnd <= 0.0;
+  const double between = PlaceBetweenChanges(a, b);
+  if (between > begin && between < end)
   {
-    return { Shorter::First };
+    const double difference = a.At(between) - b.At(between) + favour;
+    if (first ? difference > tolerance : difference < -tolerance)
+    {
+      return { Shorter::InTurns, between };
+    }
   }
-  if (atBegin >= 0.0 && atEnd >= 0.0 && IsNowhereLonger(b, a, begin, end, tolerance, bisections))
-  {
-    return { Shorter::Second };
-  }
-  return { Shorter::Unknown };
+  return { first ? Shorter::First : Shorter::Second };
 }
 
 bool ComeFromOnePlace(const Window& a, const Window& b)
@@ -149,7 +121,8 @@ bool ComeFromOnePlace(const Window& a, const Window& b)
 
 } // namespace
 
-void KeepShortestWindows(std::vector<Window>& windows, double length, WindowBuffers& buffers)
+void KeepShortestWindows(
+  std::vector<Window>& windows, double length, double roundOff, WindowBuffers& buffers)
 {
   const double least = 1e-14 * length;
   const auto before = [](const Window& a, const Window& b) { return a.Begin < b.Begin; };
@@ -214,11 +187,14 @@ void KeepShortestWindows(std::vector<Window>& windows, double length, WindowBuff
         kept.push_back(w);
         break;
       }
-      const Comparison comparison = Compare(last, w, w.Begin, end);
-      if (comparison.Which == Shorter::Unknown)
+      const Comparison comparison = Compare(last, w, w.Begin, end, roundOff);
+      if (comparison.Which == Shorter::InTurns)
       {
-        kept.push_back(w);
-        break;
+        Window rest = w;
+        rest.SetBegin(comparison.Change);
+        insert(rest);
+        w.SetEnd(comparison.Change);
+        continue;
       }
       if (comparison.Which == Shorter::First || comparison.Which == Shorter::FirstThenSecond)
       {

@@ -33,16 +33,6 @@ struct GeodesicWindow
       ? this->Start - this->X * x
       : this->Start + std::sqrt((x - this->X) * (x - this->X) + this->Y * this->Y);
   }
-  /// Its derivative, where the distance is known.
-  double SlopeAt(double x, double distance) const
-  {
-    if (this->IsStrip)
-    {
-      return -this->X;
-    }
-    const double radius = distance - this->Start;
-    return radius > 0.0 ? std::clamp((x - this->X) / radius, -1.0, 1.0) : 1.0;
-  }
   /// The x-component of the way through the place x of the edge, whose y-component is -Y.
   double WayX(double x) const { return this->IsStrip ? -this->X : x - this->X; }
   /// The least distance in the interval.
@@ -92,10 +82,9 @@ struct WindowBuffers
 
 /// Cut windows on one edge, of the given length, so that where several of them overlap the one with
 /// the shortest distance stays, and sort them along the edge. Windows that end at each other and
-/// come from one place of the plane become one. Nothing that is shortest is lost: where it is not
-/// certain which one is shorter, both stay. Windows that are past stay where others are not shorter
-/// by more than round-off.
+/// come from one place of the plane become one. Distances that differ by less than the part roundOff
+/// count as equal, and windows that are past stay then.
 void KeepShortestWindows(
-  std::vector<GeodesicWindow>& windows, double length, WindowBuffers& buffers);
+  std::vector<GeodesicWindow>& windows, double length, double roundOff, WindowBuffers& buffers);
 
 } // namespace SurfaceDiffusion

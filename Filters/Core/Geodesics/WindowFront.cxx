@@ -162,33 +162,62 @@ void WindowFront::Run(const ProgressMonitor& progress)
   }
 }
 
-std::vector<Window>* WindowFront::PastAt(Index edge)
+std::vector<Window>* WindowFront::PastAt(Index edge, double& roundOff)
 {
-  constexpr unsigned char often = 4;
+  constexpr unsigned char often = 4, most = 64;
   unsigned char& times = this->TimesCrossed[static_cast<std::size_t>(edge)];
+  roundOff = 1e-14;
   if (times < often)
   {
     ++times;
     return nullptr;
   }
+  roundOff = times < most ? 1e-12 : 1e-11;
+  times = std::min<unsigned char>(most, static_cast<unsigned char>(times + 1));
   return &this->Past[edge];
 }
 
 void WindowFront::CrossTriangle(Index edge, std::vector<Window>& windows)
 {
   const EdgeFrames::Frame& frame = this->Frames[edge];
-  const double atBegin = this->TimeAt(CornerAfter(edge, 1)),
-               atEnd = this->TimeAt(CornerAfter(edge, 2));
+  const Index begin = CornerAfter(edge, 1), end = CornerAfter(edge, 2);
+  const double atBegin = this->TimeAt(begin), atEnd = this->TimeAt(end);
   const double margin = 2e-14 * (windows[0].AtBegin + frame.Length);
+  double roundOff = 0.0;
+  std::vector<Window>* const past = this->PastAt(edge, roundOff);
+  bool byBegin = false, byEnd = false;
   const auto useless = [&](const Window& w)
-  { return IsUseless(w, frame.Length, atBegin, atEnd, margin); };
+  {
+    if (IsUseless(w, frame.Length, atBegin, atEnd, margin))
+    {
+      return true;
+    }
+    if (!past)
+    {
+      return false;
+    }
+    // Ways that are hardly shorter than those by a vertex turn there.
+    const double gain = roundOff * (w.AtBegin + frame.Length);
+    const bool nearBegin = atBegin + w.End < w.AtEnd + gain;
+    const bool nearEnd = !nearBegin && atEnd + (frame.Length - w.Begin) < w.AtBegin + gain;
+    byBegin = byBegin || nearBegin;
+    byEnd = byEnd || nearEnd;
+    return nearBegin || nearEnd;
+  };
   windows.erase(std::remove_if(windows.begin(), windows.end(), useless), windows.end());
-  std::vector<Window>* const past = this->PastAt(edge);
+  if (byBegin)
+  {
+    this->LeaveEverywhere(this->VertexAt(begin));
+  }
+  if (byEnd)
+  {
+    this->LeaveEverywhere(this->VertexAt(end));
+  }
   if (past)
   {
     windows.insert(windows.end(), past->begin(), past->end());
   }
-  KeepShortestWindows(windows, frame.Length, this->Buffers);
+  KeepShortestWindows(windows, frame.Length, roundOff, this->Buffers);
   if (past)
   {
     *past = windows;
@@ -321,6 +350,16 @@ void WindowFront::LeaveCorner(Index corner, double from, double to, double start
       this->TimeAt(CornerAfter(corner, 2)), margin))
   {
     this->GoOver(corner, false, this->Frames.Behind(corner), w);
+  }
+}
+
+void WindowFront::LeaveEverywhere(Index vertex)
+{
+  Incoming& way = this->Ways[static_cast<std::size_t>(vertex)];
+  if (way.Corner >= 0 && this->Frames.PassingAt(vertex) != EdgeFrames::Passing::All)
+  {
+    way.Corner = -1;
+    this->Queue.emplace(this->Times[static_cast<std::size_t>(vertex)], -1 - vertex);
   }
 }
 

@@ -55,12 +55,14 @@ private:
   void ReachFrom(Index corner, const Eigen::Vector2d& place, Index source);
   /// A way to a vertex. Returns whether it is shorter than those known.
   bool Reach(Index vertex, double time, Index source, const Incoming& incoming);
+  /// Ways from a vertex in all directions, whatever way leads there.
+  void LeaveEverywhere(Index vertex);
   void LeaveVertex(Index vertex);
   /// Ways from a corner of a triangle over the edge opposite, between angles from the edge to the
   /// next corner.
   void LeaveCorner(Index corner, double from, double to, double start, Index source);
   /// Windows that have gone over the triangle; null: they are not kept here.
-  std::vector<GeodesicWindow>* PastAt(Index edge);
+  std::vector<GeodesicWindow>* PastAt(Index edge, double& roundOff);
   void CrossTriangle(Index edge, std::vector<GeodesicWindow>& windows);
   void CrossCorner(
     Index edge, bool left, const GeodesicWindow& window, bool seesApex, double atApex);
