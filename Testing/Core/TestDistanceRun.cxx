@@ -406,8 +406,10 @@ TEST(DistanceRun, LabelsOfRegionsAreTheirValues)
   {
     const Solution found =
       From(s, { { 0, -2.0 }, { 7, 4.0 }, { 8, 4.0 }, { 30, 2.5 } }, {}, method);
-    const Solution alone[] = { From(s, { { 0, 1.0 } }), From(s, { { 7, 1.0 }, { 8, 1.0 } }),
-      From(s, { { 30, 1.0 } }) };
+    const DistanceMethod ofSources =
+      method == DistanceMethod::Heat ? DistanceMethod::Automatic : method;
+    const Solution alone[] = { From(s, { { 0, 1.0 } }, {}, ofSources),
+      From(s, { { 7, 1.0 }, { 8, 1.0 } }, {}, ofSources), From(s, { { 30, 1.0 } }, {}, ofSources) };
     const double names[] = { -2.0, 4.0, 2.5 };
     for (Index i = 0; i < s.NumberOfVertices(); ++i)
     {
@@ -479,6 +481,7 @@ TEST(DistanceRun, NamesWhatIsNotAllowed)
   expect(data, "all 1 nonzero points of Data are where Mask excludes the surface");
   data.Mask.Values.clear();
   data.Speeds.Values.assign(static_cast<std::size_t>(s.NumberOfVertices()), 1.0);
+  settings.Method = DistanceMethod::Heat;
   expect(data, "Method is 0; allowed: 1 Eikonal or 3 Automatic together with Speeds");
   settings.Method = DistanceMethod::Eikonal;
   data.Speeds.Values[5] = -1.0;

@@ -124,7 +124,7 @@ DEFAULTS = {
     "vtkSurfaceDerivativesFilter": {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
     "vtkSurfaceDistanceFilter": {
-        **SURFACE, "Method": "Heat", "MaximumDistance": 0.0, "AlongSpeed": 1.0, "AcrossSpeed": 1.0,
+        **SURFACE, "Method": "Automatic", "MaximumDistance": 0.0, "AlongSpeed": 1.0, "AcrossSpeed": 1.0,
         "ComputeGradient": False},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",

@@ -3,6 +3,7 @@
 #include "Core/Geodesics/EikonalDistance.h"
 
 #include "Core/Surface/EdgeRefinement.h"
+#include "Core/Surface/IntrinsicDelaunay.h"
 
 #include <Eigen/LU>
 
@@ -20,32 +21,40 @@ namespace
 
 constexpr double Never = std::numeric_limits<double>::infinity();
 
-/// Squares whose sides are the longest edges that stay, of the area of a component.
-constexpr double SquaresOfComponent = 1500.0;
+/// The area of a component in squares of its longest edge, below which it is refined, and in squares
+/// of the longest edge that stays then.
+constexpr double FewSquares = 100.0;
+constexpr double EnoughSquares = 1500.0;
 
 /// Refinement ends with this many triangles, or four times the given ones.
 constexpr Index EnoughTriangles = 50000;
 
-/// Per vertex, the length up to which edges of its component stay.
+/// Per vertex, the length up to which edges of its component stay: any, unless one of them is long.
 std::vector<double> FindLengths(const TriangleMesh& mesh)
 {
   const std::vector<Index>& begin = mesh.ComponentsBegin();
-  std::vector<Index> componentOf(static_cast<std::size_t>(mesh.NumberOfVertices()));
+  const auto n = static_cast<std::size_t>(mesh.NumberOfVertices());
+  std::vector<std::size_t> componentOf(n);
   for (std::size_t c = 0; c + 1 < begin.size(); ++c)
   {
-    std::fill(
-      componentOf.begin() + begin[c], componentOf.begin() + begin[c + 1], static_cast<Index>(c));
+    std::fill(componentOf.begin() + begin[c], componentOf.begin() + begin[c + 1], c);
   }
   std::vector<double> areas(begin.size(), 0.0);
+  std::vector<double> longest(begin.size(), 0.0);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    const auto vertex = static_cast<std::size_t>(mesh.TriangleVertices()(t, 0));
-    areas[static_cast<std::size_t>(componentOf[vertex])] += mesh.Shapes()[t].Area();
+    const TriangleMesh::Shape shape = mesh.Shapes()[static_cast<std::size_t>(t)];
+    const std::size_t c = componentOf[static_cast<std::size_t>(mesh.TriangleVertices()(t, 0))];
+    areas[c] += shape.Area();
+    longest[c] =
+      std::max({ longest[c], shape.EdgeLength(0), shape.EdgeLength(1), shape.EdgeLength(2) });
   }
-  std::vector<double> lengths;
-  for (const Index component : componentOf)
+  std::vector<double> lengths(n);
+  for (std::size_t i = 0; i < n; ++i)
   {
-    lengths.push_back(std::sqrt(areas[static_cast<std::size_t>(component)] / SquaresOfComponent));
+    const double area = areas[componentOf[i]];
+    const double edge = longest[componentOf[i]];
+    lengths[i] = FewSquares * edge * edge > area ? std::sqrt(area / EnoughSquares) : 2.0 * edge;
   }
   return lengths;
 }
@@ -106,9 +115,18 @@ EikonalDistance::EikonalDistance(std::shared_ptr<const TriangleMesh> mesh,
   , Fine(this->Mesh)
   , Shapes(std::move(shapes))
 {
-  const bool isOther = this->Refine(positions, parallel, progress) || !this->Shapes.empty();
-  this->Fronts = std::make_unique<const GeodesicDistance>(
-    isOther ? this->Fine : std::move(delaunay), this->Shapes);
+  const bool isRefined = this->Refine(positions, parallel, progress);
+  std::shared_ptr<const TriangleMesh> marched = std::move(delaunay);
+  if (!this->Shapes.empty())
+  {
+    marched = this->Fine;
+  }
+  else if (isRefined)
+  {
+    marched =
+      IntrinsicDelaunay(this->Fine, parallel, ProgressMonitor(), BoundaryEdges::Keep).Mesh();
+  }
+  this->Fronts = std::make_unique<const GeodesicDistance>(std::move(marched), this->Shapes);
 }
 
 /// Returns whether there are long edges.
@@ -120,7 +138,7 @@ bool EikonalDistance::Refine(
   bool hasLongEdges = false;
   for (Index t = 0; t < mesh.NumberOfTriangles() && !hasLongEdges; ++t)
   {
-    const TriangleMesh::Shape shape = mesh.Shapes()[t];
+    const TriangleMesh::Shape shape = mesh.Shapes()[static_cast<std::size_t>(t)];
     hasLongEdges = std::max({ shape.EdgeLength(0), shape.EdgeLength(1), shape.EdgeLength(2) }) >
       lengths[static_cast<std::size_t>(mesh.TriangleVertices()(t, 0))];
   }

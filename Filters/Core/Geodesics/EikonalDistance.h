@@ -13,14 +13,14 @@ namespace SurfaceDiffusion
 /// GeodesicDistance from pieces of sources, on any surface. Where triangles are few, their edges are
 /// bisected first, which does not change the surface: fronts that meet behind a vertex, and an intrinsic
 /// Delaunay triangulation whose triangles have a vertex at two corners, would make distances far too
-/// short. Edges are long above a 39th of the root of the area of their component. Surfaces without such
-/// edges stay as they are.
+/// short. A component whose longest edge is above a tenth of the root of its area is cut until no edge
+/// is above a 39th. Surfaces without such components stay as they are.
 class EikonalDistance
 {
 public:
   /// mesh: the triangles of the surface, with vertices at `positions`, in units of the mesh. delaunay:
   /// their intrinsic Delaunay triangulation, with BoundaryEdges::Keep. shapes: of mesh; empty: its own.
-  /// Triangles of different speeds do not become others, and refined ones need not. Throws Aborted.
+  /// Triangles of different speeds do not become others. Throws Aborted.
   EikonalDistance(std::shared_ptr<const TriangleMesh> mesh,
     std::shared_ptr<const TriangleMesh> delaunay, const Points& positions, FrontShapes shapes,
     const ParallelFor& parallel, const ProgressMonitor& progress);
