@@ -111,8 +111,8 @@ class _Xml:
             blocks, size, last = sizes
             packed = self._lengths(start, raw, 3 + blocks)[3:] if blocks <= len(self.data) else [len(self.data) + 1]
             if blocks * size > self.room or last > size * (blocks > 0) or sum(packed) > len(self.data):
-                raise ValueError(f"an array announces {blocks} blocks of {size} bytes, the last of {last}, the file "
-                                 f"has {len(self.data)}")
+                raise ValueError(f"an array announces {blocks} blocks of {size} bytes, the last of {last}, the "
+                                 f"file has {len(self.data)}")
         elif sizes and sizes[0] > len(self.data):
             raise ValueError(f"an array announces {sizes[0]} bytes, the file has {len(self.data)}")
 
@@ -156,7 +156,8 @@ def check_xml(data, read):
         for array in map(fields.GetArray, range(fields.GetNumberOfArrays())):
             low, high = array.GetRange() if array is not None and array.GetNumberOfTuples() else (0, 0)
             if not 0 <= low <= high <= found.room:
-                raise ValueError(f"the offsets of cells are {low:.10g} to {high:.10g}, the file has {len(data)} bytes")
+                raise ValueError(f"the offsets of cells are {low:.10g} to {high:.10g}, the file has {len(data)} "
+                                 "bytes")
     return found.type
 
 

@@ -145,7 +145,10 @@ def _cell_types(grid):
 
     if grid.GetNumberOfCells() == 0:
         return np.zeros(0, np.uint8)
-    return vtk_to_numpy(grid.GetCellTypesArray())
+    try:
+        return vtk_to_numpy(grid.GetCellTypes())
+    except TypeError:  # before VTK 9.6
+        return vtk_to_numpy(grid.GetCellTypesArray())
 
 
 def cells_of_faces(mesh):
