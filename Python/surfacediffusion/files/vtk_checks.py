@@ -134,10 +134,13 @@ class _Xml:
                 raise ValueError(f"offsets of cells described as {words}")
             attributes = " ".join(f'{key}="{word}"' for key, word in words.items())
             arrays += f'<DataArray Name="{len(arrays)}" {attributes}>'.encode() + (text or b"") + b"</DataArray>"
-        kind = self.type.encode()
-        piece = b'<Piece NumberOfPoints="0"' + b"".join(
-            b' NumberOf%s="0"' % cells.encode() for cells in (*_CELLS, "Cells")) + b"/>"
-        return (self.root + b"<%s><FieldData>" % kind + arrays + b"</FieldData>" + piece + b"</%s>" % kind
+        kind, empty = self.type.encode(), b'<DataArray type="%s" Name="%s" %sformat="ascii"/>'
+        piece = b'<Piece NumberOfPoints="0" NumberOfCells="0"><Points>' + empty % (
+            b"Float32", b"Points", b'NumberOfComponents="3" ') + b"</Points>"
+        if self.type == "UnstructuredGrid":
+            piece += b"<Cells>" + b"".join(empty % (number, name, b"") for number, name in (
+                (b"Int64", b"connectivity"), (b"Int64", b"offsets"), (b"UInt8", b"types"))) + b"</Cells>"
+        return (self.root + b"<%s><FieldData>" % kind + arrays + b"</FieldData>" + piece + b"</Piece></%s>" % kind
                 + (self.data[self.appended.start():] if self.appended else b"</VTKFile>"))
 
 
