@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files as other programs write them, and as nobody should: what the user reads of them."""
 
+import base64
 import gzip
 import itertools
 import os
-import re
 import shutil
 import signal
 import struct
@@ -14,12 +14,13 @@ import sys
 import time
 import unittest
 import warnings
+import xml.etree.ElementTree as tree
 import zlib
 from pathlib import Path
 
 import numpy as np
 import samples
-from samples import FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
+from samples import FACES, N, NOISE, POINTS, SMOOTH, nib, run
 from TestFormats import FormatTest, stl_text
 
 from surfacediffusion.files import FileError, read_data, read_surface
@@ -39,7 +40,8 @@ class ForeignTest(FormatTest):
         limit = f"import resource; resource.setrlimit(resource.RLIMIT_AS, ({MEMORY}, {MEMORY}))\n"
         if "libasan" in os.environ.get("LD_PRELOAD", ""):  # which reserves terabytes of addresses
             limit = ""
-        code = limit + "import sys\nfrom surfacediffusion.command import main\nsys.exit(main(['info', *sys.argv[1:]]))"
+        code = limit + "import sys\nfrom surfacediffusion.command import main\n" \
+            "sys.exit(main(['info', *sys.argv[1:]]))"
         done = subprocess.run([sys.executable, "-c", code, *names], capture_output=True, text=True, timeout=60,
                               env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
         return done.returncode, done.stdout, done.stderr
@@ -51,185 +53,6 @@ class ForeignTest(FormatTest):
         self.assertEqual((code, out), (2, ""), error)
         for name, line in itertools.zip_longest(names, error.splitlines()):
             self.assertRegex(line or "nothing", f"^surfacediffusion: {name}: {expected}")
-
-
-HEAD = "# vtk DataFile Version {}\nmade by hand\n{}\nDATASET {}\n"
-TETRAHEDRON = "POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
-CORNERS = [0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2]
-
-
-def xml(points="4", cells="4", components="3", offsets=(3, 6, 9, 12), corners=CORNERS, kind="PolyData"):
-    polys = "Polys" if kind == "PolyData" else "Cells"
-    types = "" if kind == "PolyData" else '<DataArray type="UInt8" Name="types" format="ascii">5 5 5 5</DataArray>'
-    return (f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" '
-            f'header_type="UInt32"><{kind}><Piece NumberOfPoints="{points}" NumberOf{polys}="{cells}"><Points>'
-            f'<DataArray type="Float32" Name="Points" NumberOfComponents="{components}" format="ascii">'
-            f'0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><{polys}>'
-            f'<DataArray type="Int64" Name="connectivity" format="ascii">{" ".join(map(str, corners))}</DataArray>'
-            f'<DataArray type="Int64" Name="offsets" format="ascii">{" ".join(map(str, offsets))}</DataArray>{types}'
-            f'</{polys}></Piece></{kind}></VTKFile>')
-
-
-@unittest.skipUnless(HAS_VTK, "needs vtk")
-class VTK(ForeignTest):
-    def legacy(self, cells, count=4, size=16, binary=False):
-        head = HEAD.format("4.2", "BINARY" if binary else "ASCII", "POLYDATA").encode()
-        if not binary:
-            return head + (TETRAHEDRON + f"POLYGONS {count} {size}\n" + " ".join(map(str, cells)) + "\n").encode()
-        return head + b"POINTS 4 float\n" + struct.pack(">12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1) + (
-            f"\nPOLYGONS {count} {size}\n".encode() + struct.pack(f">{len(cells)}i", *cells) + b"\n")
-
-    def test_counts_beyond_the_file_are_refused_before_vtk_reads_them(self):
-        good = [3, 0, 1, 2, 3, 0, 3, 1, 3, 0, 2, 3, 3, 1, 3, 2]
-        field = b"POINT_DATA 4\nFIELD f 1\na %s float\n"
-        version5 = HEAD.format("5.1", "ASCII", "POLYDATA") + TETRAHEDRON + "POLYGONS 5 12\nOFFSETS vtktypeint64\n{}\n" \
-            "CONNECTIVITY vtktypeint64\n" + " ".join(map(str, CORNERS)) + "\n"
-        right = [self.write("a.vtk", self.legacy(good)), self.write("b.vtk", version5.format("0 3 6 9 12")),
-                 self.write("a.vtp", xml()), self.write("a.vtu", xml(kind="UnstructuredGrid"))]
-        code, out, error = self.info(*right)
-        self.assertEqual((code, out.count("4 points, 4 faces"), error), (0, 4, ""))
-        wrong = [(".vtk", self.legacy([number, *good[1:]], binary=binary))
-                 for number in (2**30, 1000, 5, 4, 0, -1) for binary in (False, True)]
-        wrong += [(".vtk", self.legacy(good, count, size)) for count, size in (
-            (3, 16), (5, 16), (4, 15), (10**12, 16), (4, 10**12))]
-        wrong += [(".vtk", self.legacy([*good[:3], 99, *good[4:]])),
-                  (".vtk", self.legacy(good).replace(b"POINTS 4", b"POINTS 1000000000000")),
-                  (".vtk", self.legacy(good).replace(b"POLYGONS", b"polygonsX")),
-                  (".vtk", self.legacy(good, binary=True) + field % b"1000000000 4"),
-                  (".vtk", self.legacy(good, binary=True) + field % b"1 1000000000000"),
-                  (".vtk", self.legacy(good, binary=True) + b"POINT_DATA 4\nSCALARS a float 1000000000\n"
-                   b"LOOKUP_TABLE default\n")]
-        wrong += [(".vtk", version5.format(offsets)) for offsets in (
-            "0 3 1000 9 12", "0 3 6 9 1000", "0 -3 6 9 12", "0 9 6 3 12")]
-        for kind, end in (("PolyData", ".vtp"), ("UnstructuredGrid", ".vtu")):
-            wrong += [(end, xml(**{key: number}, kind=kind)) for key in ("points", "cells", "components")
-                      for number in ("1000000000", "1000000000000", "-1", "9" * 18)]
-            wrong += [(end, xml(offsets=offsets, kind=kind)) for offsets in (
-                (3, 6, 9, 1000), (-3, 6, 9, 12), (3, 6, 9, 10**15))]
-            wrong.append((end, xml(corners=[0, 1, 99, *CORNERS[3:]], kind=kind)))
-        self.refused_all(wrong, "(damaged|a face refers)")
-
-    def compressed(self, offset="{}", blocks=1, size=1024, last=48, packed=None):
-        """The arrays of xml(), compressed behind the file; the numbers are those of the coordinates."""
-        given = [np.array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1], "<f4"), np.array(CORNERS, "<i8"),
-                 np.array([3, 6, 9, 12], "<i8")]
-        head, body = xml(), b""
-        head = head.replace('header_type', 'compressor="vtkZLibDataCompressor" header_type')
-        for k, (array, kind) in enumerate(zip(given, ("Float32", "Int64", "Int64"))):
-            place = offset.format(len(body)) if k == 0 else len(body)
-            head = re.sub(rf'(<DataArray type="{kind}"[^>]*) format="ascii">[^<]*<', rf'\1 format="appended" offset="{place}"><',
-                          head, count=1)
-            zipped = zlib.compress(array.tobytes())
-            numbers = (blocks, size, last, packed or len(zipped)) if k == 0 else (1, 1024, array.nbytes, len(zipped))
-            body += struct.pack("<4I", *numbers) + zipped
-        return head.replace("</VTKFile>", '<AppendedData encoding="raw">_').encode() + body + b"</AppendedData></VTKFile>"
-
-    def test_blocks_beyond_the_file_are_refused_before_vtk_reads_them(self):
-        self.assertIn("4 points, 4 faces", self.succeed("info", self.write("a.vtp", self.compressed())))
-        self.refused_all([(".vtp", content) for content in (
-            self.compressed(blocks=0), self.compressed(last=2000), self.compressed(size=2**31), self.compressed(packed=10**9),
-            self.compressed(blocks=2**30), self.compressed("1e9"), self.compressed("99999999"), self.compressed("-5"))],
-            "damaged VTK XML file: ")
-
-    def test_grids_of_triangles_are_surfaces_and_stay_grids(self):
-        """As meshio writes all surfaces."""
-        from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
-        from vtkmodules.vtkIOLegacy import vtkUnstructuredGridReader
-        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
-
-        text = HEAD.format("3.0", "ASCII", "UNSTRUCTURED_GRID") + "POINTS 5 double\n0 0 0 1 0 0 0 1 0 1 1 .5 2 0 0\n" \
-            "CELLS 4 14\n2 0 1\n3 0 1 2\n4 0 1 3 2\n1 4\nCELL_TYPES 4\n3 5 9 1\nCELL_DATA 4\nSCALARS c int\n" \
-            "LOOKUP_TABLE default\n1 2 3 4\nPOINT_DATA 5\nSCALARS f double\nLOOKUP_TABLE default\n0 1 2 3 4\n"
-        self.write("a.vtk", text)
-        self.assertIn("5 points, 2 faces", self.succeed("info", "a.vtk"))
-        surface = read_surface("a.vtk")
-        self.assertEqual(surface.faces, [[0, 1, 2], [0, 1, 3, 2]])
-        surface.save("b.vtk", 2 * surface.points)
-        self.write("a.vtu", xml(kind="UnstructuredGrid"))
-        tetrahedron = read_surface("a.vtu")
-        np.testing.assert_array_equal(tetrahedron.faces, np.reshape(CORNERS, (4, 3)))
-        tetrahedron.save("b.vtu", 2 * tetrahedron.points)
-        for reader, name, given in ((vtkUnstructuredGridReader(), "b.vtk", surface),
-                                    (vtkXMLUnstructuredGridReader(), "b.vtu", tetrahedron)):
-            reader.SetFileName(name)
-            reader.Update()
-            self.assertIsInstance(reader.GetOutput(), vtkUnstructuredGrid)
-            self.assertEqual(reader.GetOutput().GetNumberOfCells(), 4)
-            self.assertEqual(reader.GetOutput().GetPoint(3), tuple(2 * given.points[3]))
-        np.testing.assert_array_equal(read_data("b.vtk").parts[0].values[:, 0], np.arange(5))
-        self.refused("4 cells, of which 2 are polygons", "smooth", "a.vtk", "a.vtk", 1, "c.vtk", "--faces")
-        self.succeed("distance", "a.vtu", "c.vtu", "--from", 0)
-        self.assertEqual(read_data("c.vtu").names, ["distance"])
-
-    def test_pixels_are_quadrilaterals_and_volumes_are_refused(self):
-        grid = HEAD.format("3.0", "ASCII", "UNSTRUCTURED_GRID") + TETRAHEDRON + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n{}\n"
-        self.assertEqual(read_surface(self.write("a.vtk", grid.format(8))).faces, [[0, 1, 3, 2]])
-        self.refused(r"a.vtk: .*cells of VTK's type 10; allowed: triangles \(5\).*ParaView's filter Extract Surface",
-                     "info", self.write("a.vtk", grid.format(10)))
-
-    def test_strips_are_triangles_of_one_side_with_the_data_of_their_strip(self):
-        text = HEAD.format("3.0", "ASCII", "POLYDATA") + "POINTS 6 float\n" \
-            + " ".join(f"{i // 2} {i % 2} 0" for i in range(6)) + "\nLINES 1 3\n2 0 1\n" \
-            "TRIANGLE_STRIPS 1 5\n4 0 2 1 3\nCELL_DATA 2\nSCALARS c int\nLOOKUP_TABLE default\n7 9\n"
-        surface = read_surface(self.write("a.vtk", text))
-        self.assertIn("6 points, 2 faces", self.succeed("info", "a.vtk"))
-        corners = np.asarray(surface.points, float)[surface.faces]
-        areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
-        np.testing.assert_array_equal(areas, [1, 1])
-        self.succeed("directions", "a.vtk", "b.vtk")
-        from surfacediffusion.files import vtk_files
-        again = read_surface("b.vtk")
-        np.testing.assert_array_equal(again.faces, surface.faces)
-        np.testing.assert_array_equal(vtk_files.arrays_of(again.image.GetCellData())["c"], [7, 9, 9])
-
-    def test_directions_have_a_tuple_for_each_cell(self):
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkIOLegacy import vtkPolyDataReader
-
-        head = HEAD.format("3.0", "ASCII", "POLYDATA") + "POINTS 4 double\n0 0 0 1 0 0 0 1 0 1 1 .5\n"
-        self.write("a.vtk", head + "VERTICES 1 2\n1 0\nLINES 2 6\n2 0 1\n2 1 3\nPOLYGONS 2 8\n3 0 1 2\n3 1 3 2\n")
-        self.succeed("directions", "a.vtk", "b.vtk", "--method", "Smooth")
-        self.succeed("directions", "a.vtk", "b.npy", "--method", "Smooth")
-        reader = vtkPolyDataReader()
-        reader.SetFileName("b.vtk")
-        reader.ReadAllVectorsOn()
-        reader.ReadAllFieldsOn()
-        reader.Update()
-        found = vtk_to_numpy(reader.GetOutput().GetCellData().GetArray("Direction"))
-        np.testing.assert_array_equal(found[:3], 0)
-        np.testing.assert_array_equal(found[3:], np.load("b.npy"))
-        self.assertEqual(len(found), 5)
-
-    def test_all_attributes_of_a_legacy_file_are_kept(self):
-        count = {"SCALARS": 1, "VECTORS": 3, "NORMALS": 3, "TENSORS": 9, "TEXTURE_COORDINATES": 2}
-        text = HEAD.format("3.0", "ASCII", "POLYDATA") + TETRAHEDRON + "POLYGONS 2 8\n3 0 1 2\n3 0 3 1\nPOINT_DATA 4\n"
-        names = [f"{word.lower()}{i}" for word in count for i in (1, 2)]
-        for name in names:
-            word = name[:-1].upper()
-            text += f"{word} {name} {'2 ' * (word[0] + word[2] == 'TX')}float\n"
-            text += "LOOKUP_TABLE default\n" * (word == "SCALARS") + "0.5 " * 4 * count[word] + "\n"
-        surface = read_surface(self.write("a.vtk", text))
-        surface.save("b.vtk", 2 * surface.points)
-        found = read_data("b.vtk").names
-        self.assertEqual({name: found.count(name) for name in names}, {name: count[name[:-1].upper()] for name in names})
-
-    def test_names_of_arrays_may_have_any_signs(self):
-        names = ["p<0.05", "A&B", 'a "b"', "c>d", "&amp;", "e\tf"]
-        samples.write_surface("a.surf.gii")
-        for end in ("vtp", "vtk"):
-            samples.write_vtk(f"a.{end}", arrays={"f": NOISE})
-            from vtkmodules.util.numpy_support import numpy_to_vtk
-            from surfacediffusion.files import vtk_files
-            mesh = read_surface(f"a.{end}").image
-            for k, name in enumerate(names):
-                array = numpy_to_vtk(NOISE + k, deep=True)
-                array.SetName(name)
-                mesh.GetPointData().AddArray(array)
-            self.write(f"a.{end}", vtk_files.write(end, mesh))
-            self.succeed("smooth", f"a.{end}", f"a.{end}", 5, f"b.{end}", "--column", names[0], "--column", "f")
-            found = read_data(f"b.{end}")
-            self.assertEqual(found.names[:3], ["f", *names[:2]])
-            self.assertEqual(set(found.names), {"f", *names})
 
 
 class PLY(ForeignTest):
@@ -247,8 +70,9 @@ class GIFTI(ForeignTest):
     def array(self, values, intent="NONE", kind="FLOAT32", order="RowMajorOrder", dimensions=None, other=""):
         sizes = " ".join(f'Dim{i}="{n}"' for i, n in enumerate(np.shape(values)))
         text = " ".join(map(str, np.ravel(values, "F" if order.startswith("Col") else "C").tolist()))
-        return (f'<DataArray Intent="NIFTI_INTENT_{intent}" DataType="NIFTI_TYPE_{kind}" ArrayIndexingOrder="{order}" '
-                f'Dimensionality="{dimensions or np.ndim(values)}" {sizes} Encoding="ASCII" Endian="LittleEndian" '
+        return (f'<DataArray Intent="NIFTI_INTENT_{intent}" DataType="NIFTI_TYPE_{kind}" '
+                f'ArrayIndexingOrder="{order}" Dimensionality="{dimensions or np.ndim(values)}" {sizes} '
+                f'Encoding="ASCII" Endian="LittleEndian" '
                 f'ExternalFileName="{other}" ExternalFileOffset=""><MetaData/><Data>{text}</Data></DataArray>')
 
     def gifti(self, name, *arrays):
@@ -261,10 +85,6 @@ class GIFTI(ForeignTest):
 
     def read(self, name):
         """The arrays of a file in base64, by the letter of the format: not with nibabel."""
-        import base64
-        import xml.etree.ElementTree as tree
-        import zlib
-
         found = []
         for entry in tree.parse(name).getroot().iter("DataArray"):
             given = entry.attrib
@@ -295,8 +115,8 @@ class GIFTI(ForeignTest):
         self.gifti("d.func.gii", self.array(np.tile(np.float32([1, 2, 3, 4]), (N, 1)), order="ColumnMajorOrder"))
         self.succeed("smooth", "s.surf.gii", "d.func.gii", 5, "o.func.gii")
         for word in ("MIN", "MAX"):
-            done = subprocess.run(["wb_command", "-metric-stats", "o.func.gii", "-reduce", word], capture_output=True,
-                                  text=True, check=True)
+            done = subprocess.run(["wb_command", "-metric-stats", "o.func.gii", "-reduce", word],
+                                  capture_output=True, text=True, check=True)
             np.testing.assert_allclose([float(x) for x in done.stdout.split()], [1, 2, 3, 4], rtol=1e-5)
 
     def test_types_that_gifti_has_not_are_read_and_written_as_those_that_it_has(self):
@@ -392,9 +212,9 @@ class Signals(ForeignTest):
         files = sorted(os.listdir())
         for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
             process = subprocess.Popen(
-                [sys.executable, "-m", "surfacediffusion.command", "smooth", "a.dtseries.nii", "20", "o.dtseries.nii",
-                 "--left", "l.surf.gii", "--right", "r.surf.gii"], stderr=subprocess.PIPE, text=True,
-                env=dict(os.environ, PYTHONDONTWRITEBYTECODE="1"))
+                [sys.executable, "-m", "surfacediffusion.command", "smooth", "a.dtseries.nii", "20",
+                 "o.dtseries.nii", "--left", "l.surf.gii", "--right", "r.surf.gii"], stderr=subprocess.PIPE,
+                text=True, env=dict(os.environ, PYTHONDONTWRITEBYTECODE="1"))
             while process.poll() is None and not list(Path().glob(".o.*")):
                 time.sleep(0.01)
             process.send_signal(number)
@@ -408,7 +228,8 @@ class Signals(ForeignTest):
 class STL(ForeignTest):
     def rounded(self, points, faces, noise):
         corners = points[faces] + np.random.default_rng(5).uniform(-noise, noise, (len(faces), 3, 3))
-        return self.write("part.stl", samples.stl_bytes(corners.reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3)))
+        numbers = np.arange(3 * len(faces)).reshape(-1, 3)
+        return self.write("part.stl", samples.stl_bytes(corners.reshape(-1, 3), numbers))
 
     def test_other_binary_files_are_none(self):
         content = b"MZ" + bytes(78) + struct.pack("<I", 1) + bytes(200)
@@ -427,7 +248,8 @@ class STL(ForeignTest):
         for scale in (1e-3, 1, 1e3):
             points = scale * POINTS
             self.rounded(points, FACES, 1e-6 * scale)
-            out = self.warned(r"part.stl: corners of facets up to \S+ apart, at open edges, are joined", "info", "part.stl")
+            out = self.warned(r"part.stl: corners of facets up to \S+ apart, at open edges, are joined", "info",
+                              "part.stl")
             self.assertIn(f"{N} points, 320 faces", out)
             for command in (["denoise-mesh", "part.stl", "o.stl"], ["refine", "part.stl", str(2 * scale), "o.ply"],
                             *[["texture", "part.stl", "5mm", "o.obj"]] * (scale == 1)):
@@ -453,7 +275,8 @@ class STL(ForeignTest):
         thin = np.array([[0, 0, 0], [1, 0, 0], [1, 1e-6, 0], [0, 1e-6, 0], [0, 1, 0]], float)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            surface = read_surface(self.write("a.stl", samples.stl_bytes(thin, np.array([[0, 1, 2], [0, 2, 3], [3, 2, 4]]))))
+            faces = np.array([[0, 1, 2], [0, 2, 3], [3, 2, 4]])
+            surface = read_surface(self.write("a.stl", samples.stl_bytes(thin, faces)))
         self.assertEqual((len(surface.points), len(surface.faces)), (5, 3))
 
 
@@ -474,7 +297,8 @@ class FreeSurfer(ForeignTest):
 
     def test_surfaces_in_text_are_read_and_written(self):
         lines = ["#!ascii version of lh.white", f"{N} {len(FACES)}"]
-        lines += [f"{x!r}  {y!r}  {z!r}  0" for x, y, z in POINTS.tolist()] + [f"{a} {b} {c} 0" for a, b, c in FACES]
+        lines += [f"{x!r}  {y!r}  {z!r}  0" for x, y, z in POINTS.tolist()]
+        lines += [f"{a} {b} {c} 0" for a, b, c in FACES]
         self.write("lh.asc", "\n".join(lines) + "\n")
         surface = read_surface("lh.asc")
         np.testing.assert_array_equal(surface.points, POINTS)
@@ -491,15 +315,16 @@ class FreeSurfer(ForeignTest):
     def test_the_other_hemisphere_is_a_warning(self):
         samples.write_surface("rh.white")
         samples.write_curv("lh.thickness")
-        self.warned("lh.thickness is of CortexLeft by its name, but rh.white is of CortexRight", "smooth", "rh.white",
-                    "lh.thickness", 5, "o.curv")
+        self.warned("lh.thickness is of CortexLeft by its name, but rh.white is of CortexRight", "smooth",
+                    "rh.white", "lh.thickness", 5, "o.curv")
         samples.write_surface("lh.white")
         self.succeed("smooth", "lh.white", "lh.thickness", 5, "o.curv")
 
     def test_lengths_on_shapes_that_are_none_of_the_brain_are_a_warning(self):
         samples.write_curv("lh.thickness")
         expected = "{} is {}: lengths and areas on it are not those of the brain; give an anatomical surface"
-        for name, shape in (("lh.inflated", "inflated"), ("lh.sphere", "spherical"), ("lh.sphere.reg", "spherical")):
+        for name, shape in (("lh.inflated", "inflated"), ("lh.sphere", "spherical"),
+                            ("lh.sphere.reg", "spherical")):
             samples.write_surface(name)
             self.warned(expected.format(name, shape), "smooth", name, "lh.thickness", 5, "o.curv")
             self.warned(expected.format(name, shape), "distance", name, "o.curv", "--from", 0)
@@ -516,11 +341,12 @@ class Sentences(ForeignTest):
     """What the user reads instead of what Python says."""
 
     def test_words_that_are_no_numbers(self):
+        ply = samples.ply_bytes(binary=False)
         cases = [("a.stl", stl_text().replace("vertex ", "vertex blah", 1), "'blah.*' is no number"),
                  ("a.off", "OFF\n3 1 0\n0 0 0\n1 blah 0\n0 1 0\n3 0 1 2\n", "'blah' is no number"),
                  ("a.obj", samples.obj_text().replace("v ", "v blah ", 1), "'blah' is no number"),
-                 ("a.ply", samples.ply_bytes(binary=False).replace(b"end_header\n", b"end_header\nblah "), "a line of"),
-                 ("b.ply", samples.ply_bytes(binary=False).replace(b"\n3 ", b"\nblah "), "'blah' is no whole number"),
+                 ("a.ply", ply.replace(b"end_header\n", b"end_header\nblah "), "a line of"),
+                 ("b.ply", ply.replace(b"\n3 ", b"\nblah "), "'blah' is no whole number"),
                  ("empty.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
                   "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n",
                   "0 points and 0 faces; allowed: at least one of each"),
@@ -533,7 +359,7 @@ class Sentences(ForeignTest):
                 for word in ("np.", "b'", "literal", "reshape", "index out", "convert"):
                     self.assertNotIn(word, error)
 
-        self.write("c.ply", samples.ply_bytes(binary=False).replace(b"\n3 0 ", b"\n3 99999999999999999999 "))
+        self.write("c.ply", ply.replace(b"\n3 0 ", b"\n3 99999999999999999999 "))
         with self.assertRaisesRegex(FileError, "c.ply: damaged PLY file: a number is too large"):
             read_surface("c.ply")
 
@@ -550,8 +376,8 @@ class Sentences(ForeignTest):
     def test_results_beyond_single_precision_are_refused_and_never_infinite(self):
         self.write("a.off", samples.off_text(3e37 * POINTS))
         for name in ("o.npy", "o.func.gii", "o.txt"):
-            self.refused(rf"{name}: a value is \S+e\+38; allowed in .*: less than 3.4e38", "distance", "a.off", name,
-                         "--from", 0)
+            self.refused(rf"{name}: a value is \S+e\+38; allowed in .*: less than 3.4e38", "distance", "a.off",
+                         name, "--from", 0)
         self.refused(r"o.stl: a coordinate is 3e\+39; allowed in STL: less than 3.4e38", "refine", self.write(
             "b.off", samples.off_text(3e38 * POINTS)), "1e40", "o.stl")
         surface = read_surface(samples.write_surface("a.surf.gii"))
@@ -570,18 +396,35 @@ class Sentences(ForeignTest):
 
     def test_commands_of_workbench_are_answered_with_those_that_are_here(self):
         for word, here in (("-metric-gradient", "derivatives"), ("-surface-geodesic-distance", "distance")):
-            self.refused(f"^surfacediffusion: {word} is a command of Workbench .*; allowed: surfacediffusion {here}, or "
-                         "-metric-smoothing and -cifti-smoothing", word, "a", "b", "c")
+            self.refused(f"^surfacediffusion: {word} is a command of Workbench .*; allowed: surfacediffusion "
+                         f"{here}, or -metric-smoothing and -cifti-smoothing", word, "a", "b", "c")
+
+    def test_the_advice_about_seams_works(self):
+        corners = np.arange(3 * len(FACES)).reshape(-1, 3)
+        self.write("seam.obj", samples.obj_text(POINTS[FACES].reshape(-1, 3), corners))
+        np.save("v.npy", SMOOTH[FACES].ravel())
+        for command in (["smooth", "seam.obj", "v.npy", 8, "o.npy"], ["curvature", "seam.obj", "o.npy"],
+                        ["texture", "seam.obj", 20, "o.npy"], ["normals", "seam.obj", "o.npy"],
+                        ["directions", "seam.obj", "o.npy"], ["derivatives", "seam.obj", "v.npy", "o.npy"],
+                        ["interpolate", "seam.obj", "v.npy", "o.npy"], ["denoise-mesh", "seam.obj", "o.obj"]):
+            with self.subTest(command):
+                self.assertIn("coincide with others", run(*command)[2])
+                self.assertRegex(run(*command)[2], "to join them, set --merge")
+                code, _, error = run(*command, "--merge")
+                self.assertEqual(code, 0, error)
+                self.assertNotIn("coincide", error)
+        self.refused("--merge for parts, whose vertices at the same place are one; allowed: for values", "texture",
+                     "seam.obj", "20mm", "o.off", "--merge")
 
     def test_what_texture_allows_for_a_part_is_allowed(self):
         self.write("part.stl", samples.stl_bytes())
-        self.refused("x.3mf: without relief .*; allowed: --relief HEIGHT, or .obj, .off or .ply", "texture", "part.stl",
-                     "8mm", "x.3mf")
+        self.refused("x.3mf: without relief .*; allowed: --relief HEIGHT, or .obj, .off or .ply", "texture",
+                     "part.stl", "8mm", "x.3mf")
         for name in ("x.obj", "x.off", "x.ply"):
             self.succeed("texture", "part.stl", "8mm", name)
         self.succeed("texture", "part.stl", "8mm", "x.3mf", "--relief", "0.4mm")
-        self.refused("part.stl: an STL file numbers no vertices, .*; allowed: a surface of another format", "texture",
-                     "part.stl", "8mm", "x.npy")
+        self.refused("part.stl: an STL file numbers no vertices, .*; allowed: a surface of another format",
+                     "texture", "part.stl", "8mm", "x.npy")
 
 
 if __name__ == "__main__":

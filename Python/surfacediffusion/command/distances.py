@@ -120,6 +120,7 @@ def add_derivatives(commands):
                         choices=("gradient", "divergence", "curl", "laplacian", "velocity"),
                         help="what to compute (default: gradient); velocity: grad T/|grad T|^2")
     common.fwhm(parser, " that smooths DATA first", "0")
+    common.merge(parser)
 
 
 def derivatives(arguments, report):
@@ -127,7 +128,7 @@ def derivatives(arguments, report):
     with report.timed("read"):
         _, data, names = inputs.read_values(arguments.data, surface, tables=False)
     word = arguments.quantity.capitalize()
-    options = {"on_faces": False, "smoothing_fwhm": arguments.fwhm}
+    options = {"on_faces": False, "smoothing_fwhm": arguments.fwhm, **common.merging(arguments)}
     with report.working(word) as progress:
         solver = solid(surface)
         if arguments.quantity == "velocity":

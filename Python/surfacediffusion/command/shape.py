@@ -25,6 +25,7 @@ def add_directions(commands):
     common.output(parser, "unit vectors, or 0, on the faces")
     parser.add_argument("--method", metavar="NAME", default="PrincipalCurvature",
                         help="PrincipalCurvature (default), CurvatureAligned or Smooth")
+    common.merge(parser)
 
 
 def directions(arguments, report):
@@ -34,7 +35,8 @@ def directions(arguments, report):
         raise FileError(f"{arguments.output}: the name announces no format for directions on "
                         "faces; allowed: .npy, or .vtk, .vtp or .vtu as the surface")
     with report.working("Directions") as progress:
-        field = direction_field(solid(surface), method=arguments.method, progress=progress)
+        field = direction_field(solid(surface), method=arguments.method, progress=progress,
+                                **common.merging(arguments))
     report.facts.update(method=arguments.method, faces=len(surface.faces))
     with report.timed("write"):
         if kind == "npy":

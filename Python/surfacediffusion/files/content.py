@@ -21,8 +21,8 @@ import numpy as np
 NAMES = {
     "gifti": "GIFTI", "cifti": "CIFTI", "nifti": "NIfTI", "mgh": "FreeSurfer mgh",
     "freesurfer": "FreeSurfer surface", "asc": "FreeSurfer asc", "curv": "FreeSurfer curv",
-    "label": "FreeSurfer label", "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY", "stl": "STL",
-    "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid", "npy": "NumPy npy", "text": "text",
+    "label": "FreeSurfer label", "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY",
+    "stl": "STL", "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid", "npy": "NumPy npy", "text": "text",
 }
 
 # The ends of names by which an output that is named like another format, or like none, is noticed.

@@ -161,7 +161,8 @@ def _write_gifti(surface, points):
 def _read_freesurfer(content):
     freesurfer = import_reader("nibabel.freesurfer", content)
     if not content.bytes.startswith(b"\xff\xff\xfe"):
-        warnings.warn(f"{content.path}: quadrangles, which are read, and written, as two triangles each", stacklevel=4)
+        warnings.warn(f"{content.path}: quadrangles, which are read, and written, as two triangles each",
+                      stacklevel=4)
     # nibabel warns about files without a footer, which are allowed.
     with warnings.catch_warnings(), on_disk(content.bytes) as path:
         warnings.simplefilter("ignore")

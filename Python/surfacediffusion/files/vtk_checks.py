@@ -111,8 +111,8 @@ class _Xml:
             blocks, size, last = sizes
             packed = self._lengths(start, raw, 3 + blocks)[3:] if blocks <= len(self.data) else [len(self.data) + 1]
             if blocks * size > self.room or last > size * (blocks > 0) or sum(packed) > len(self.data):
-                raise ValueError(f"an array announces {blocks} blocks of {size} bytes, the last of {last}, the file "
-                                 f"has {len(self.data)}")
+                raise ValueError(f"an array announces {blocks} blocks of {size} bytes, the last of {last}, the "
+                                 f"file has {len(self.data)}")
         elif sizes and sizes[0] > len(self.data):
             raise ValueError(f"an array announces {sizes[0]} bytes, the file has {len(self.data)}")
 
@@ -134,10 +134,13 @@ class _Xml:
                 raise ValueError(f"offsets of cells described as {words}")
             attributes = " ".join(f'{key}="{word}"' for key, word in words.items())
             arrays += f'<DataArray Name="{len(arrays)}" {attributes}>'.encode() + (text or b"") + b"</DataArray>"
-        kind = self.type.encode()
-        piece = b'<Piece NumberOfPoints="0"' + b"".join(
-            b' NumberOf%s="0"' % cells.encode() for cells in (*_CELLS, "Cells")) + b"/>"
-        return (self.root + b"<%s><FieldData>" % kind + arrays + b"</FieldData>" + piece + b"</%s>" % kind
+        kind, empty = self.type.encode(), b'<DataArray type="%s" Name="%s" %sformat="ascii"/>'
+        piece = b'<Piece NumberOfPoints="0" NumberOfCells="0"><Points>' + empty % (
+            b"Float32", b"Points", b'NumberOfComponents="3" ') + b"</Points>"
+        if self.type == "UnstructuredGrid":
+            piece += b"<Cells>" + b"".join(empty % (number, name, b"") for number, name in (
+                (b"Int64", b"connectivity"), (b"Int64", b"offsets"), (b"UInt8", b"types"))) + b"</Cells>"
+        return (self.root + b"<%s><FieldData>" % kind + arrays + b"</FieldData>" + piece + b"</Piece></%s>" % kind
                 + (self.data[self.appended.start():] if self.appended else b"</VTKFile>"))
 
 
@@ -156,7 +159,8 @@ def check_xml(data, read):
         for array in map(fields.GetArray, range(fields.GetNumberOfArrays())):
             low, high = array.GetRange() if array is not None and array.GetNumberOfTuples() else (0, 0)
             if not 0 <= low <= high <= found.room:
-                raise ValueError(f"the offsets of cells are {low:.10g} to {high:.10g}, the file has {len(data)} bytes")
+                raise ValueError(f"the offsets of cells are {low:.10g} to {high:.10g}, the file has {len(data)} "
+                                 "bytes")
     return found.type
 
 

@@ -4,6 +4,7 @@
 imported for such files only."""
 from __future__ import annotations
 
+import contextlib
 import re
 from xml.sax.saxutils import escape
 
@@ -145,7 +146,10 @@ def _cell_types(grid):
 
     if grid.GetNumberOfCells() == 0:
         return np.zeros(0, np.uint8)
-    return vtk_to_numpy(grid.GetCellTypesArray())
+    try:
+        return vtk_to_numpy(grid.GetCellTypes())
+    except TypeError:  # before VTK 9.6
+        return vtk_to_numpy(grid.GetCellTypesArray())
 
 
 def cells_of_faces(mesh):
@@ -166,9 +170,12 @@ def arrays_of(data):
     """{name: array} of the numeric arrays among the attributes of points or cells."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
-    return {array.GetName() or f"array{i}": vtk_to_numpy(array)
-            for i, array in enumerate(arrays) if array is not None}
+    found = {}
+    for i, array in enumerate(map(data.GetArray, range(data.GetNumberOfArrays()))):
+        if array is not None:
+            with contextlib.suppress(AssertionError):  # bits, before VTK 9.3
+                found[array.GetName() or f"array{i}"] = vtk_to_numpy(array)
+    return found
 
 
 def numbers_of(data):
