@@ -144,6 +144,9 @@ TEST(TuringTextureFilter, WarnsOnceWhyNoPatternGrows)
   auto filter = MakeFilter(sphere);
   filter->SetDiffusionRate1(3.0 * 2.6);
   EXPECT_TRUE(Contains(WarningOf(filter), "more than 4 times that of u2, and is 3 times"));
+  filter->SetDiffusionRate1(0.0);
+  filter->SetDiffusionRate2(0.0);
+  EXPECT_TRUE(Contains(WarningOf(filter), "more than 4 times that of u2, and both are 0"));
 
   filter = MakeFilter(sphere);
   filter->SetDecayRate(14.0);
