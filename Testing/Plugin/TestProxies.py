@@ -50,6 +50,7 @@ SEARCHES = {
     "divergence": {"SurfaceDerivativesFilter"},
     "laplacian": {"SurfaceDerivativesFilter"},
     "distance": {"SurfaceDistanceFilter"},
+    "geodesic": {"SurfaceDistanceFilter"},
     "random": {"SurfaceRandomFieldFilter"},
     "relief": {"SurfaceReliefFilter"},
     "3d printing": {"SurfaceReliefFilter"},

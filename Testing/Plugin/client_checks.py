@@ -35,7 +35,7 @@ RESULTS = {
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.707249, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
-    "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "u1")),
+    "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "Texture")),
 }
 TOLERANCE = 1e-4  # of these numbers, relative
 
