@@ -238,8 +238,11 @@ Values DerivativesRun::ReadAtVertices(const Fields& fields, const Derivatives& o
   {
     const Eigen::Index count = std::min(ColumnsAtOnce, u.cols() - first);
     const double columns = static_cast<double>(u.cols());
-    const LinearFits fits = FitByHeat(*surface.SharedAssembler(), positions,
-      operators.Normals().OfVertices, u.middleCols(first, count), fwhm, false, this->Parallel,
+    const LinearFits fits = FitByHeat(
+      *surface.SharedAssembler(), positions,
+      [&](Index i, const Eigen::RowVectorXd&) -> Eigen::Vector3d
+      { return operators.Normals().OfVertices.row(i).transpose(); },
+      u.middleCols(first, count), fwhm, this->Parallel,
       progress.Part(first / columns, (first + count) / columns));
     u.middleCols(first, count) = fits.Constants;
     this->MissedResidual = std::max(this->MissedResidual, fits.MissedResidual);
