@@ -131,10 +131,10 @@ public:
   ///@}
 
   /**
-   * On: the points of the output are moved so that the normals of its triangles match the result
+   * On: the points of the output are moved so that its triangles turn as the normals have turned
    * (mesh denoising by vertex updating). They minimise 1/2 int |grad(N . x)|^2 + 1/(2 r^2) int
-   * |x - x_0|^2 with N the result on the triangle and r = 5 mean edge lengths. The input array must
-   * be the surface's normals. Points in single precision stay in single precision, all others
+   * |x - x_0|^2 with N the turned normal of the triangle and r = 5 mean edge lengths. A map that
+   * has changed nothing moves nothing. The input array must be the surface's normals. Points in single precision stay in single precision, all others
    * become double. Normals of the input on points or cells, that are active there or have the name
    * "Normals", are computed again for the moved points, and tangents are dropped; in surfaces in
    * pieces, only active normals are kept. GetMeanDisplacement() and the following values describe

@@ -14,13 +14,14 @@
  * 1/R, and the shape index 1; with the normals inward -1/R, and -1. A saddle has the shape index 0,
  * and a plane, where it is not defined, 0, too. The normals are those of the triangles. Triangles
  * with another orientation than their neighbours count as turned, so that signs follow the larger
- * part of the area, and are counted in a warning. On a surface with one side only, signs change
- * somewhere.
+ * part of the area, and are counted in a warning. On surfaces with one side, such as a Moebius strip,
+ * the sign cannot be told, and H is positive. Curvatures that the rounding of the coordinates may
+ * cause, of single precision if all coordinates are such numbers, are 0.
  *
  * - FWHM 0: the scale of the mesh. A quadratic polynomial is fitted to the points of at most two
  *   edges from each point. Its error falls with the square of the length of the edges on even
  *   meshes, and with the length on others and at boundaries. Noise of the points is amplified by
- *   1/length^2.
+ *   1/length^2. Convex corners of coarse solids are positive.
  * - FWHM > 0: the slope of the normals of these polynomials over the positions, by linear
  *   regression around each point. The weights are a Gaussian of this full width at half maximum
  *   on the surface, the kernel of the heat equation. Spheres keep their curvature at any scale, and

@@ -40,13 +40,14 @@
  * 15 steps towards the last normals follow.
  *
  * Connected components have noise levels, types and units of length of their own, so that several
- * surfaces in one data set are denoised as each alone. Components with less than 200 points, too
- * few for statistics, share one noise level, relative to their mean edge lengths, and one type.
- * Triangles may be oriented at random: those across edges of two triangles are oriented alike
+ * surfaces in one data set are denoised as each alone. Noise that cannot be told from the shape
+ * stays unless NoiseLevel is given: that of components with less than 200 points, and of those with
+ * more than a quarter of the edges within flat faces, which no noise leaves. Triangles may be oriented at random: those across edges of two triangles are oriented alike
  * inside. The result does not depend on the numbering of points and cells.
  *
  * A surface whose estimated noise is 0 stays as it is, with a warning. Points that move by more
- * than 10 times the noise level are a warning, too. Noise of more than half of the distance between
+ * than 10 times the noise level are a warning, too, and so is a change of the volume of a closed
+ * component by more than 2 %. Noise of more than half of the distance between
  * opposite sides of a thin part cannot be removed.
  *
  * Input array 3 (points, one component, optional): points with a nonzero value stay where they

@@ -26,16 +26,23 @@
  *     g_i = P_i sum_t a_t g_t / sum_t a_t               (at a point, in its tangent plane)
  *     A_i d_i = - sum_t a_t v_t . grad phi_i + int over the boundary of phi_i v . nu
  *
- * is the discretisation; the curl is the divergence of v x n, and the Laplacian that of g_t. So the
- * divergence integrates to the flux across the boundary, and the curl to the circulation along it,
- * up to round-off. On planes all are exact for linear functions and fields, at the boundary, too.
+ * is the discretisation; the curl is the divergence of v x n, and the Laplacian inside that of g_t.
+ * For the divergence, vectors at points count by their parts across the normals of N. Max (J.
+ * Graphics Tools 4(2), 1999), which are those of spheres where points lie on one. So the divergence
+ * integrates to the flux across the boundary, and the curl to the circulation along it, up to
+ * round-off. The Laplacian at a boundary point is that of the quadratic polynomial that fits the data
+ * of the points at most two edges from it, or NaN, with a warning, if these are too few, as on a strip
+ * of one row of cells. On planes all are exact for linear functions and fields, at the boundary, too,
+ * and the Laplacian there for quadratic functions.
+ *
  * The gradient at points has an error of second order in the length of the edges inside of even
  * meshes, and of first order on others and at boundaries. The Laplacian inside is -K u/A with the
  * cotangent weights K. Its error is of second order where the points of a mesh look alike, and of
  * first order, as root mean square, on icospheres. On other meshes its means over several points
  * converge, but not its values at single points. Edges of three or more triangles are no boundary.
- * Triangles with another orientation than their neighbours count
- * as turned, so that the signs of the curl follow the larger part of the area.
+ * Triangles with another orientation than their neighbours count as turned, so that the signs of the
+ * curl follow the larger part of the area. On surfaces with one side, such as a Moebius strip, the curl
+ * has no sign, and its magnitude is given.
  *
  * SmoothingFWHM smooths the data first: the value at each point becomes that of the linear function
  * that fits the data around it, weighted with a Gaussian of this full width at half maximum on

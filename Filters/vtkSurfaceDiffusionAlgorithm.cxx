@@ -75,11 +75,13 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
 {
   UpdateState& state = *this->State;
   state.ChooseStep = nullptr;
+  state.TimeWarnings.clear();
   if (!this->PublishesTimes())
   {
     return this->Superclass::RequestData(request, inputs, outputs);
   }
   const std::optional<double> time = FindRequestedTime(request, outputs);
+  state.TimeWarnings = DescribeUnusedTimes(inputs[0]->GetInformationObject(0));
   double last = -1.0; // not known, unless the run succeeds in this process
   state.ChooseStep = [&](int found)
   {

@@ -50,9 +50,9 @@ public:
    * requested. Between two time steps the output is the earlier one, outside their range it is the
    * nearest one. A run that ends early, by a StopTolerance, is computed to its end by the first
    * update, after which only the times that it has are published; before, those of
-   * NumberOfTimeSteps are. The input is then requested once, at its own first time if it has times.
-   * A steady state has no times: On has no effect with Mode SteadyState.
-   * Off (default): the output is the final state, and the input's time passes through.
+   * NumberOfTimeSteps are. The input is then requested once, at its own first time if it has times,
+   * with a warning if it has several. A steady state has no times: On has no effect with Mode
+   * SteadyState. Off (default): the output is the final state, and the input's time passes through.
    */
   SURFACEDIFFUSION_SWITCH(GenerateTimeSteps);
 

@@ -21,6 +21,7 @@ vtkSurfaceDistanceFilter::vtkSurfaceDistanceFilter()
 {
   this->DeclareNumber("NumberOfSources");
   this->DeclareNumber("NumberOfUnreachedPoints");
+  this->DeclareNumber("EffectiveMethod");
   this->SetNumberOfInputPorts(2);
 }
 

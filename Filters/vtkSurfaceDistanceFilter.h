@@ -15,8 +15,7 @@
  *   vtkPointSet), inside triangles, too. Points that no line uses are sources of their own; lines,
  *   cells of the types VTK_LINE and VTK_POLY_LINE, are one source where they share points. Hidden
  *   points and lines, and lines with a hidden point, take no part; or
- * - without an input on port 1, the points at which input array 0 is not 0. Points of one value are
- *   one source: a region, or a label.
+ * - without an input on port 1, the points at which input array 0 is not 0.
  *
  * `NearestSource` is the value of array 0 at the nearest source, or on port 1 the number of
  * the point, of a line the smallest of its points. Points that no way reaches have 0, or -1.
@@ -29,13 +28,17 @@
  * | 8 | points or cells | SpeedArray: the speed of fronts, 0 or more, in coordinate units per unit of time; on points, a triangle has the mean of its corners. Triangles of speed 0 are barriers |
  * | 9 | points | SourceTimes: T_0 of the sources of array 0 |
  *
- * Arrays 8 and 9, AlongSpeed and AcrossSpeed need Method Eikonal. A source that the mask or a
+ * Arrays 8 and 9, AlongSpeed and AcrossSpeed need Method Automatic or Eikonal. A source that the mask or a
  * barrier excludes, or that no triangle uses, does not count, with a warning; sources of port 1
  * near to excluded triangles do not move to others. Without any source that counts, the update is
  * an error. With MaximumDistance 0 a warning says if half of the points on port 1 are farther from
  * the surface than a quarter of the diagonal of its bounding box.
  *
  * **Method.**
+ * - Automatic: Exact where it takes at most a second, without speeds and start times, and Eikonal
+ *   otherwise. GetEffectiveMethod() says which.
+ * - Exact: the lengths of the shortest ways over the triangles, to round-off, by windows on their
+ *   edges (J. S. B. Mitchell, D. M. Mount, C. H. Papadimitriou, SIAM J. Comput. 16(4), 1987).
  * - Heat: the heat method (K. Crane, C. Weischedel, M. Wardetzky, ACM Trans. Graph. 32(5), 2013)
  *   with the time step 1.1 h^2 of the mean edge length h, on the intrinsic Delaunay triangulation.
  *   Level sets are smooth, also where fronts meet. The mean error is 0.31 % of the largest distance
@@ -44,15 +47,16 @@
  *   take two substitutions. At boundaries its condition is that of no flux.
  * - Eikonal: fast marching on the triangles (R. Kimmel, J. Sethian, PNAS 95, 1998) that lays the
  *   way from the source out in the plane of each triangle (M. Novotni, R. Klein, WSCG 2002), on the
- *   intrinsic Delaunay triangulation or, with speeds, on the triangles of the surface. Distances in
- *   planes are exact; mean errors on the same icosphere are 0.06 to 0.09 %.
+ *   intrinsic Delaunay triangulation or, with speeds, on the triangles of the surface. Where
+ *   triangles are few, their edges are bisected for it. Distances in planes are exact; mean errors
+ *   on the same icosphere are 0.06 to 0.09 %.
  *
  * Where fronts of Eikonal arrive at the same time, as around a region on an even mesh, round-off
  * decides between them, so that another numbering of the points changes results by up to a quarter
  * of an edge, half of the error.
  *
- * Fronts of different sources do not mix: with Eikonal the distance is the smallest of those of
- * each source alone. With Heat, NearestSource is that of Eikonal.
+ * The distance is the smallest of those of each source alone; with Heat only nearly so, and
+ * NearestSource is that of Automatic.
  *
  * Ways end at boundaries, and go around their corners. Where three or more triangles share an edge,
  * ways go on from each of them to all others. With ComputeGradient, `DistanceGradient` or
@@ -86,16 +90,20 @@ public:
   enum MethodType
   {
     METHOD_HEAT = 0,
-    METHOD_EIKONAL = 1
+    METHOD_EIKONAL = 1,
+    METHOD_EXACT = 2,
+    METHOD_AUTOMATIC = 3
   };
 
   ///@{
   /**
-   * How distances are found, see above. Default: Heat.
+   * How distances are found, see above. Default: Automatic.
    */
   SURFACEDIFFUSION_CHOICE(Method);
   void SetMethodToHeat() { this->SetMethod(METHOD_HEAT); }
   void SetMethodToEikonal() { this->SetMethod(METHOD_EIKONAL); }
+  void SetMethodToExact() { this->SetMethod(METHOD_EXACT); }
+  void SetMethodToAutomatic() { this->SetMethod(METHOD_AUTOMATIC); }
   ///@}
 
   /**
@@ -129,6 +137,11 @@ public:
   SURFACEDIFFUSION_NUMBER(NumberOfSources, int);
   SURFACEDIFFUSION_NUMBER(NumberOfUnreachedPoints, int);
   ///@}
+
+  /**
+   * The method of the last update, a MethodType. Of composite data with several, the lowest.
+   */
+  SURFACEDIFFUSION_NUMBER(EffectiveMethod, int);
 
 protected:
   vtkSurfaceDistanceFilter();

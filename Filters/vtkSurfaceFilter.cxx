@@ -7,6 +7,7 @@
 #include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Distributed/CellFlags.h"
+#include "Distributed/PieceArrays.h"
 #include "Distributed/SurfacePieces.h"
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
@@ -55,6 +56,20 @@ bool HasVisibleCells(vtkPolyData* data)
   return flags.empty() ||
     std::any_of(flags.begin() + data->GetNumberOfVerts() + data->GetNumberOfLines(), flags.end(),
       [](unsigned char flag) { return (flag & absent) == 0; });
+}
+
+/// When a filter, its inputs and their blocks were modified. own: that of the filter.
+std::vector<vtkMTimeType> FindTimes(vtkAlgorithm* filter, vtkMTimeType own)
+{
+  std::vector<vtkMTimeType> times = { own };
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    for (vtkDataObject* const data : ListLeaves(filter->GetInputDataObject(port, 0)))
+    {
+      times.push_back(data->GetMTime());
+    }
+  }
+  return times;
 }
 
 } // namespace
@@ -310,12 +325,30 @@ int vtkSurfaceFilter::RequestData(
 {
   std::vector<SurfacePiece> pieces =
     CopyStructure(vtkDataObject::GetData(inputs[0]), vtkDataObject::GetData(outputs, 0));
+  // Asked for another time or piece of the same input, the update would fail again.
+  if (this->Private->HasFailed &&
+    !Processes(this->Controller)
+       .Any(this->Private->FailedWith != FindTimes(this, this->Superclass::GetMTime())))
+  {
+    return this->EndUpdate();
+  }
   this->Private->HasFailed = false;
   this->Private->Numbers.Set({});
   const std::string alone = DescribeLonePiece(inputs, this->Controller, this->HasWholeSurface);
   if (!alone.empty())
   {
     this->ReportError(alone);
+    return this->EndUpdate();
+  }
+  const Processes processes(this->Controller);
+  const std::string disagreement = FindDisagreement(processes, this, pieces);
+  if (!disagreement.empty())
+  {
+    this->Private->HasFailed = true;
+    if (processes.Rank() == 0)
+    {
+      this->ReportError(disagreement);
+    }
     return this->EndUpdate();
   }
   this->Private->Input = DescribeInput(vtkDataObject::GetData(inputs[0]));
@@ -335,7 +368,6 @@ int vtkSurfaceFilter::RequestData(
   {
     return this->EndUpdate();
   }
-  const Processes processes(this->Controller);
   const PieceSummary summary =
     processes.Count() > 1 ? SummarizePieces(processes, pieces) : PieceSummary();
   this->Private->Processes.reset();
@@ -452,19 +484,20 @@ int vtkSurfaceFilter::EndUpdate()
   if (failed)
   {
     this->Private->QuietExecutive(this->GetExecutive());
+    this->Private->FailedWith = FindTimes(this, this->Superclass::GetMTime());
   }
   return failed ? 0 : 1;
 }
 
 vtkMTimeType vtkSurfaceFilter::GetMTime()
 {
-  if (this->Private->HasFailed)
+  const vtkMTimeType own = this->Superclass::GetMTime();
+  if (!this->Private->HasFailed)
   {
-    // The pipeline takes the output for up to date even though the update has failed.
-    this->Private->FailureTime.Modified();
-    return this->Private->FailureTime.GetMTime();
+    return own;
   }
-  return this->Superclass::GetMTime();
+  const std::vector<vtkMTimeType> times = FindTimes(this, own);
+  return *std::max_element(times.begin(), times.end());
 }
 
 void vtkSurfaceFilter::ReleaseCache()

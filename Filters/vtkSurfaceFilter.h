@@ -34,11 +34,11 @@
  * combined as those of merged points. Subclasses that solve with the pieces themselves do not join
  * them.
  *
- * **Errors.** An update that reports an error fails: GetExecutive()->Update() returns 0, filters
- * behind this one do not execute, and GetErrorCode() is vtkErrorCode::UserError (0 after an update
- * that has succeeded or was aborted). The output is the unchanged input, also after an abort, and
- * read-only values are those before the first update. The next update tries again and reports the
- * error again, until something has changed.
+ * **Errors.** An update that reports an error fails once: GetExecutive()->Update() returns 0, and
+ * filters behind this one do not execute. The output, the unchanged input (also after an abort), then
+ * counts as up to date: the next update hands it on and returns 1. GetErrorCode() stays at
+ * vtkErrorCode::UserError (0 after an update that succeeded or was aborted), read-only values are
+ * those before the first update, and other times and pieces fail in silence, until something changes.
  *
  * @sa vtkSurfaceModelAlgorithm vtkSurfaceDiffusionAlgorithm vtkSurfaceRunAlgorithm
  */
@@ -231,7 +231,7 @@ public:
    */
   virtual void ReleaseCache();
 
-  /// After an update that failed it is the present time, so that the next update tries again.
+  /// After an update that failed, it follows changes of the blocks of the input, too.
   vtkMTimeType GetMTime() override;
 
   vtkTypeBool ProcessRequest(

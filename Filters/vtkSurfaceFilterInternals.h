@@ -17,7 +17,7 @@
 #include "vtkExecutive.h"
 #include "vtkNew.h"
 #include "vtkOutputWindow.h"
-#include "vtkTimeStamp.h"
+#include "vtkType.h"
 #include "vtkWeakPointer.h"
 
 #include <cstring>
@@ -50,7 +50,7 @@ struct vtkSurfaceFilter::Internals
   bool IsComplete = true; ///< the present update, neither failed nor aborted
 
   bool HasFailed = false; ///< the last update, with an error that was reported
-  vtkTimeStamp FailureTime;
+  std::vector<vtkMTimeType> FailedWith; ///< when it and its inputs were modified
 
   ~Internals()
   {

@@ -42,12 +42,13 @@
  * not used.
  *
  * **Smoothing.** Exact holds the values. Otherwise mu, the strength of the smoothing, is found for
- * each component by generalised cross-validation (P. Craven, G. Wahba, Numer. Math. 31, 1979) or,
+ * each component of the values on each connected part of the surface, by generalised cross-validation (P. Craven, G. Wahba, Numer. Math. 31, 1979) or,
  * with a NoiseLevel, by the unbiased estimate of the risk (C. Mallows, Technometrics 15, 1973). Up
  * to 300 values are decomposed; with more, traces are those of random vectors of signs
  * (RandomSeed). Of few values cross-validation often takes noise for signal: if up to 300 values
  * would be all but held, mu is at least that with the greatest restricted likelihood (G. Wahba,
- * Ann. Statist. 13, 1985). Fewer than three places with values are held.
+ * Ann. Statist. 13, 1985). Fewer than three places with values are held. Connected parts have nothing
+ * to do with each other: each has its own mu and s.
  *
  * **The mean.** With CorrelationLength 0, constants have no energy. With CorrelationLength 1/kappa,
  * values are measured from their weighted mean, to which u returns beyond that distance from the
@@ -73,9 +74,10 @@
  * `<name>Error`, where name is that of the array of values. ResultArrayName, if it is not empty, is
  * the name of the former and the prefix of the latter. Connected components without a value are
  * NaN, which a warning counts. Port 1: a table with a row per component of the values: `Block`,
- * `Component`, `Smoothing` (mu, in the unit of Smoothing; 0: the values hold), `Score` (of
- * cross-validation), `Misfit` (the root of the weighted mean square of u(p) - d),
- * `DegreesOfFreedom`, and `NoiseLevel` (s, given or estimated).
+ * `Component`, `Smoothing` (mu, in the unit of Smoothing; 0: the values hold; of several connected
+ * parts that of the one with the most values), `Score` (of cross-validation), `Misfit` (the root of the
+ * weighted mean square of u(p) - d), `DegreesOfFreedom` (their sum over the parts), and `NoiseLevel` (s,
+ * given or estimated, the root of its mean square over the parts).
  *
  * A surface in pieces is gathered in process 0, with the points of all processes.
  *
@@ -187,7 +189,8 @@ public:
   SURFACEDIFFUSION_SWITCH(ResultOnCells);
 
   /**
-   * mu of the first component in the last update, in the unit of Smoothing; 0 if the values hold.
+   * mu of the first component in the last update, on the connected part with the most values, in the
+   * unit of Smoothing; 0 if the values hold.
    */
   SURFACEDIFFUSION_NUMBER(EffectiveSmoothing, double);
 

@@ -212,9 +212,12 @@ void vtkSurfaceModelAlgorithm::ProcessSurfaces(
   {
     warnings.push_back({ DescribeReplacement(state.ReplacedArrays), Fingerprint() });
   }
-  for (const Sentence& sentence : state.InputWarnings)
+  for (const auto* const sentences : { &state.InputWarnings, &state.TimeWarnings })
   {
-    warnings.push_back({ sentence, Fingerprint() });
+    for (const Sentence& sentence : *sentences)
+    {
+      warnings.push_back({ sentence, Fingerprint() });
+    }
   }
   this->ReportWarnings(std::move(warnings));
 }

@@ -52,6 +52,7 @@ struct vtkSurfaceModelAlgorithm::UpdateState
   SurfaceDiffusion::Problems SettingProblems;
   std::vector<SurfaceDiffusion::Sentence>
     InputWarnings; ///< about arrays that some blocks do not have
+  std::vector<SurfaceDiffusion::Sentence> TimeWarnings; ///< about the times of the input
   std::vector<std::string> ReplacedArrays; ///< of the input, by results
   /// The step of the output in a run that ends at step `last`; null: the last one.
   std::function<int(int last)> ChooseStep;

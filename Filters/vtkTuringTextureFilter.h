@@ -52,9 +52,9 @@
  *
  * **Output**: the point arrays u1, u2 and Texture (the chosen chemical with its contrast stretched
  * to [0, 1]), and with ColorOutput the RGB array TextureColor. ResultArrayName, if it is not empty,
- * is put before each of these names. The active scalars are TextureColor if it is written, and u1
- * otherwise. Points that no participating triangle uses keep the values of input array 0, or get 0
- * if it is not set. The history has a further column `Clamped`: the number of concentrations that
+ * is put before each of these names. The active scalars are TextureColor if it is written, and
+ * Texture otherwise. Points that no participating triangle uses keep the values of input array 0, or
+ * get 0 if it is not set. The history has a further column `Clamped`: the number of concentrations that
  * were held at zero in the step. Its energy is 1/2 int (D1 grad u1 . grad u1 + D2 grad u2 . grad
  * u2) / ReactionRate, in coordinate units squared, which measures how much pattern there is. It
  * need not decrease.

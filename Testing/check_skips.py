@@ -2,9 +2,10 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """Compare the skipped tests of a run of ctest with those that may be skipped, and all with those that it
-must have. Arguments: the file that ctest --output-junit wrote, may_be_skipped.txt, and must_run.txt.
-Skipped tests that the first list does not have, and entries of the second that no test has, are printed,
-and the exit code is 1."""
+must have. Arguments: the file that ctest --output-junit wrote, that of ctest --show-only=json-v1, which
+has the labels, may_be_skipped.txt, and must_run.txt. Skipped tests that the first list does not have, and
+entries of the second that the run does not have, are printed, and the exit code is 1."""
+import json
 import re
 import sys
 from pathlib import Path
@@ -42,14 +43,33 @@ def rules_of(path):
         yield re.compile(name), re.compile(reason)
 
 
-def main(results, allowed, needed):
+def labels_of(path):
+    """The labels of each test, by its name."""
+    tests = json.loads(Path(path).read_text(encoding="utf-8"))["tests"]
+    return {test.get("name"): [label for entry in test.get("properties", []) if entry["name"] == "LABELS"
+                               for label in entry["value"]] for test in tests}
+
+
+def missing_of(needed, names, labels):
+    """The entries of must_run.txt that a run of tests with these names does not fulfil."""
+    for entry in lines_of(needed):
+        least = re.fullmatch(r"(\w+): (\d+) tests", entry)
+        if least is None:
+            if not any(re.fullmatch(entry, name) for name in names):
+                yield entry
+            continue
+        found = sum(least.group(1) in labels.get(name, []) for name in names)
+        if found < int(least.group(2)):
+            yield f"{entry}, only {found}"
+
+
+def main(results, listed, allowed, needed):
     rules = list(rules_of(allowed))
     cases = list(ElementTree.parse(results).iter("testcase"))
     unexpected = [(case.get("name"), reason) for case in cases for reason in reasons_of(case)
                   if not any(name.fullmatch(case.get("name")) and part.search(reason)
                              for name, part in rules)]
-    missing = [name for name in lines_of(needed)
-               if not any(re.fullmatch(name, case.get("name")) for case in cases)]
+    missing = list(missing_of(needed, [case.get("name") for case in cases], labels_of(listed)))
     for name, reason in unexpected:
         print(f"skipped: {name}: {reason}")
     if unexpected:
@@ -57,7 +77,7 @@ def main(results, allowed, needed):
     for name in missing:
         print(f"not run: {name}")
     if missing:
-        print(f"No test has these names of {needed}, so the run has failed.")
+        print(f"The run does not have these tests of {needed}, so it has failed.")
     return 1 if unexpected or missing else 0
 
 

@@ -2,7 +2,7 @@
 # Usage: run-tests.sh [versions | checks]
 # Installs what is needed, builds, and runs every test. The last lines are ctest's summary, with the
 # seconds of processor time per label. In CI (CI is set) it is an error if test data are missing, if
-# a test is skipped that may_be_skipped.txt does not list, and if none is one of must_run.txt.
+# a test is skipped that may_be_skipped.txt does not list, and if one of must_run.txt is missing.
 # With "versions" it fetches other versions of VTK, and runs the tests that build the project with
 # each of them, and with pip, instead: these take as long as all others. With "checks" it runs these,
 # all sanitizers, the fuzzer and the long tests: see run-checks.sh.
@@ -41,7 +41,8 @@ status=0
 xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "$preset" -j2 \
   --output-junit "$results" --test-output-size-passed 1000000 || status=$?
 if [ -n "${CI:-}" ]; then
-  /usr/bin/python3 Testing/check_skips.py "$results" \
+  ctest --preset "$preset" --show-only=json-v1 > "$PWD/build/tests.json"
+  /usr/bin/python3 Testing/check_skips.py "$results" "$PWD/build/tests.json" \
     Testing/may_be_skipped.txt Testing/must_run.txt || status=1
 fi
 exit "$status"

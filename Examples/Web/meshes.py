@@ -5,6 +5,7 @@ import contextlib
 import gzip
 import io
 import os
+import re
 import tempfile
 import zlib
 from dataclasses import dataclass, field
@@ -15,10 +16,9 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 import surfacediffusion as sd
-from surfacediffusion.files import FileError, new_data, read_data, read_surface
+from surfacediffusion.files import FileError, new_data, read_data, read_surface, vtk_files
 from surfacediffusion.files.data import NO_VERTICES
 from surfacediffusion.files.export import export
 
@@ -81,7 +81,7 @@ def read_mesh(files, megabytes):
         paths = []
         for number, (name, content) in enumerate(files):
             # A folder each: FreeSurfer's readers look at names, and two files may have one name.
-            path = Path(folder, str(number), os.path.basename(name.replace("\\", "/")) or "file")
+            path = Path(folder, str(number), plain_name(name))
             path.parent.mkdir()
             path.write_bytes(content)
             paths.append(path)
@@ -92,6 +92,13 @@ def read_mesh(files, megabytes):
             for path in paths:
                 text = text.replace(str(path), path.name)
             raise FileError(text) from None
+
+
+def plain_name(name):
+    """A name within any folder, of one that the browser sends: the end of it, which says the format."""
+    name = re.sub(r"[\x00-\x1f]", "_", name.replace("\\", "/").rsplit("/", 1)[-1])
+    name = name.encode("utf-8", "ignore")[-120:].decode("utf-8", "ignore")
+    return name if name.strip(". ") else "file"
 
 
 def size_of(content, limit):
@@ -217,7 +224,9 @@ def _result_name(path):
 
 
 def result_file(mesh, outcome, array, name):
-    """The bytes of one of the files of result_names()."""
+    """The bytes of one of the files of result_names(): the name comes from the browser, which may send any."""
+    if name not in result_names(mesh, outcome, array):
+        raise FileError(f"{name[:80]!r}; allowed: {', '.join(result_names(mesh, outcome, array))}")
     if name == "result.vtp":
         return vtp_file(mesh, outcome)
     with tempfile.TemporaryDirectory() as folder:
@@ -242,17 +251,8 @@ def result_file(mesh, outcome, array, name):
 def vtp_file(mesh, outcome):
     """The bytes of a VTP file with the input's arrays and those of the outcome."""
     if outcome.triangles is not None:
-        return _vtp(as_polydata(outcome.points, outcome.triangles, outcome.arrays))
+        return vtk_files.write("vtp", as_polydata(outcome.points, outcome.triangles, outcome.arrays))
     points = mesh.surface.points if outcome.points is None else outcome.points
     cell_arrays = outcome.cell_arrays if len(mesh.surface.triangles) == mesh.surface.n_faces else {}
-    return _vtp(as_polydata(points, mesh.surface.triangles, {**mesh.arrays, **outcome.arrays},
-                            cell_arrays))
-
-
-def _vtp(surface):
-    writer = vtkXMLPolyDataWriter()
-    writer.SetInputData(surface)
-    writer.WriteToOutputStringOn()
-    writer.SetDataModeToBinary()  # which all versions of VTK and ParaView read
-    writer.Write()
-    return writer.GetOutputString().encode()
+    return vtk_files.write("vtp", as_polydata(points, mesh.surface.triangles, {**mesh.arrays, **outcome.arrays},
+                                              cell_arrays))

@@ -59,6 +59,13 @@ struct Choice
     return this->HasName() ? attributes->GetAbstractArray(this->Name)
                            : attributes->GetAbstractAttribute(this->Attribute);
   }
+  Located<vtkAbstractArray*> FindIn(vtkPolyData* block) const
+  {
+    vtkAbstractArray* const ofPoints =
+      this->MayBeOnPoints() ? this->FindIn(block->GetPointData()) : nullptr;
+    const bool isOnCells = !ofPoints && this->MayBeOnCells();
+    return { isOnCells ? this->FindIn(block->GetCellData()) : ofPoints, isOnCells };
+  }
 };
 
 /// The sentence of an array that is not there.
@@ -116,13 +123,7 @@ LocatedArray InputArrays::Find(int index, const char* property, int components) 
       "; allowed: points (0) or cells (1)");
   }
 
-  vtkAbstractArray* found =
-    choice.MayBeOnPoints() ? choice.FindIn(this->Block->GetPointData()) : nullptr;
-  const bool isOnCells = !found && choice.MayBeOnCells();
-  if (isOnCells)
-  {
-    found = choice.FindIn(this->Block->GetCellData());
-  }
+  const auto [found, isOnCells] = choice.FindIn(this->Block);
   if (!found)
   {
     this->Fields.Absent.push_back(
@@ -146,11 +147,26 @@ LocatedArray InputArrays::Find(int index, const char* property, int components) 
   const int size = array->GetNumberOfComponents();
   if (components == AnyNumberOfComponents ? size < 1 : size != components)
   {
-    return report("has " + std::to_string(size) + " components; allowed: " +
+    const char* const name = array->GetName();
+    const std::string unset = choice.HasName()
+      ? std::string()
+      : "is not set, and the active array " + (name ? '"' + std::string(name) + "\" " : "");
+    return report(unset + "has " + std::to_string(size) + " components; allowed: " +
       (components == AnyNumberOfComponents ? std::string("1 or more")
                                            : std::to_string(components)));
   }
   return { array, isOnCells };
+}
+
+LocatedArray FindChosenArray(vtkAlgorithm* filter, int index, vtkPolyData* block)
+{
+  const Choice choice(filter->GetInputArrayInformation(index));
+  if (!choice.IsSet)
+  {
+    return {};
+  }
+  const Located<vtkAbstractArray*> found = choice.FindIn(block);
+  return { vtkDataArray::SafeDownCast(found.Values), found.OnCells };
 }
 
 void SettleAbsence(

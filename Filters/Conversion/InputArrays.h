@@ -35,6 +35,10 @@ private:
   SurfaceDiffusion::Problems& Problems;
 };
 
+/// The numeric array at `index`, whatever its size, with null values if the block has none or none
+/// was chosen.
+LocatedArray FindChosenArray(vtkAlgorithm* filter, int index, vtkPolyData* block);
+
 /// Decides about the absent arrays of all blocks. One that no block has is a problem. One that
 /// another block has counts as not set, with a sentence in `warnings`.
 void SettleAbsence(

@@ -4,7 +4,10 @@
 
 #include "Conversion/FieldReader.h"
 #include "Distributed/CellFlags.h"
+#include "Distributed/PieceArrays.h"
+#include "Distributed/ProcessReduction.h"
 #include "Distributed/Processes.h"
+#include "Run/Collective.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
@@ -123,6 +126,7 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
   const bool hasVisible = points &&
     points->GetNumberOfPoints() > std::count(hidden.begin(), hidden.end(), static_cast<char>(1));
   const bool isEmpty = !processes.Any(hasVisible);
+  std::vector<SharedArray> arrays;
   if (!points)
   {
     problems.emplace_back(std::string("the points with values are a ") + data->GetClassName() +
@@ -150,6 +154,7 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
     }
     if (values && problems.size() == before)
     {
+      arrays.push_back(DescribeArray("values", values, "points"));
       const vtkIdType count = points->GetNumberOfPoints();
       samples->Name = values->GetName() ? values->GetName() : "";
       samples->Given = ReadValues(values);
@@ -161,8 +166,19 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
       ForgetHidden(hidden, *samples);
     }
   }
-  if (processes.Any(problems.size() > before))
+  const std::string disagreement = FindDisagreement(processes, arrays);
+  if (!disagreement.empty())
   {
+    problems.emplace_back(disagreement);
+  }
+  // Process 0 reports for all, and may compute alone.
+  const std::string problem = FirstMessage(ProcessReduction(controller), Join(problems).Text());
+  if (!problem.empty())
+  {
+    if (problems.size() == before)
+    {
+      problems.emplace_back(problem);
+    }
     return nullptr;
   }
   if (processes.Count() > 1)

@@ -8,7 +8,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <vector>
+#include <array>
 
 namespace SurfaceDiffusion
 {
@@ -27,20 +27,52 @@ void PublishTimes(const TimeSettings& settings, int last, vtkInformationVector* 
   }
 }
 
+namespace
+{
+
+/// The first and the last time; none if the data have no times.
+std::optional<std::array<double, 2>> FindTimes(vtkInformation* input)
+{
+  const int steps = input->Has(Pipeline::TIME_STEPS()) ? input->Length(Pipeline::TIME_STEPS()) : 0;
+  if (steps > 0)
+  {
+    const double* const times = input->Get(Pipeline::TIME_STEPS());
+    return { { times[0], times[steps - 1] } };
+  }
+  if (input->Has(Pipeline::TIME_RANGE()))
+  {
+    const double* const range = input->Get(Pipeline::TIME_RANGE());
+    return { { range[0], range[1] } };
+  }
+  return std::nullopt;
+}
+
+} // namespace
+
 void RequestFirstTime(vtkInformation* input)
 {
-  if (input->Has(Pipeline::TIME_STEPS()) && input->Length(Pipeline::TIME_STEPS()) > 0)
+  if (const auto times = FindTimes(input))
   {
-    input->Set(Pipeline::UPDATE_TIME_STEP(), input->Get(Pipeline::TIME_STEPS())[0]);
-  }
-  else if (input->Has(Pipeline::TIME_RANGE()))
-  {
-    input->Set(Pipeline::UPDATE_TIME_STEP(), input->Get(Pipeline::TIME_RANGE())[0]);
+    input->Set(Pipeline::UPDATE_TIME_STEP(), times->front());
   }
   else
   {
     input->Remove(Pipeline::UPDATE_TIME_STEP());
   }
+}
+
+std::vector<Sentence> DescribeUnusedTimes(vtkInformation* input)
+{
+  const auto times = FindTimes(input);
+  if (!times || times->front() == times->back())
+  {
+    return {};
+  }
+  return { Sentence(Word::Setting("GenerateTimeSteps"))
+    << " is " << Word::Switch(true) << " and the input has times from " << times->front() << " to "
+    << times->back() << ": all results are of the input at " << times->front()
+    << "; to follow its times, set " << Word::Setting("GenerateTimeSteps") << " to "
+    << Word::Switch(false) };
 }
 
 std::optional<double> FindRequestedTime(vtkInformation* request, vtkInformationVector* outputs)

@@ -5,6 +5,7 @@
 #include "Run/RunSettings.h"
 
 #include <optional>
+#include <vector>
 
 class vtkInformation;
 class vtkInformationVector;
@@ -18,6 +19,9 @@ void PublishTimes(const TimeSettings& settings, int last, vtkInformationVector* 
 /// Ask for the input at its own first time if it has times, and at no time otherwise: the requested
 /// time is a diffusion time, which has no meaning upstream.
 void RequestFirstTime(vtkInformation* input);
+
+/// The warning that an input with several times is taken at its first one; otherwise none.
+std::vector<Sentence> DescribeUnusedTimes(vtkInformation* input);
 
 /// The time that is requested from the output port that `request` comes from.
 std::optional<double> FindRequestedTime(vtkInformation* request, vtkInformationVector* outputs);

@@ -182,6 +182,13 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
   return pieces;
 }
 
+std::vector<vtkDataObject*> ListLeaves(vtkDataObject* data)
+{
+  SurfaceList surfaces;
+  surfaces.Add(data, "", "");
+  return surfaces.Leaves;
+}
+
 InputDescription DescribeInput(vtkDataObject* input)
 {
   InputDescription description;

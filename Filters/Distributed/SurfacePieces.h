@@ -35,6 +35,9 @@ bool MakeOutputObject(vtkInformationVector** inputs, vtkInformationVector* outpu
 /// vtkPartitionedDataSet and the pieces of a vtkMultiPieceDataSet are pieces of one surface.
 std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* output);
 
+/// The data without blocks that composite data consist of, or the data themselves. Null gives none.
+std::vector<vtkDataObject*> ListLeaves(vtkDataObject* data);
+
 /// What messages say about the parts of an input.
 struct InputDescription
 {

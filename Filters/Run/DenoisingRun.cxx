@@ -4,8 +4,17 @@
 
 #include "Core/Geometry/VertexUpdating.h"
 
+#include <cmath>
+
 namespace SurfaceDiffusion
 {
+
+namespace
+{
+
+constexpr double LargestVolumeChange = 0.02; ///< without a warning
+
+} // namespace
 
 void DenoisingRunSettings::Visit(SettingVisitor& visitor)
 {
@@ -28,7 +37,23 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
 std::vector<Warning> DenoisingRun::FindOwnWarnings() const
 {
   std::vector<Warning> warnings;
-  if (this->Found.Type == SurfaceType::Automatic && this->Found.MaximumDisplacement == 0.0)
+  if (this->Found.CoarseParts > 0)
+  {
+    Sentence text;
+    if (this->Found.Parts > 1)
+    {
+      text << this->Found.CoarseParts << " of " << this->Found.Parts << " parts have";
+    }
+    else
+    {
+      text << "the surface has";
+    }
+    text << " too few points on smooth faces to tell noise from shape, so that none of them moves "
+            "(to remove noise, set "
+         << Word::Setting("NoiseLevel") << ")";
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
+  else if (this->Found.Type == SurfaceType::Automatic && this->Found.MaximumDisplacement == 0.0)
   {
     Sentence text("no noise was found, so that no point moves (to remove some, set ");
     text << Word::Setting("NoiseLevel") << ")";
@@ -45,6 +70,14 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
     Sentence text;
     text << "the noise is correlated over a length of " << this->Found.CorrelationLength
          << ": details of that size are removed with it";
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
+  if (std::abs(this->Found.VolumeChange) > LargestVolumeChange)
+  {
+    Sentence text("the volume of a part changes by ");
+    text << 100.0 * this->Found.VolumeChange
+         << " %: shape was taken for noise (to remove less, set " << Word::Setting("NoiseLevel")
+         << ")";
     warnings.push_back({ text, this->SurfaceVersion });
   }
   if (this->Found.FarVertices > 0)

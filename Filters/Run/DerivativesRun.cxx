@@ -153,6 +153,7 @@ void DerivativesRun::Update(
   }
   this->Results.clear();
   this->MissedResidual = 0.0;
+  this->Undetermined = 0;
   this->NothingKnown = Sentence();
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
@@ -193,9 +194,12 @@ void DerivativesRun::Update(
         this->AddResult("Curl", operators.CurlOfVertices(u) / unit, settings);
         break;
       case DerivativeQuantity::Laplacian:
-        this->AddResult(
-          "Laplacian", operators.Divergence(operators.Gradients(u)) / unit / unit, settings);
+      {
+        const Values found = operators.Laplacian(u);
+        this->Undetermined = static_cast<Index>((found.array() != found.array()).col(0).count());
+        this->AddResult("Laplacian", found / unit / unit, settings);
         break;
+      }
       default:
       {
         Values gradients = operators.Gradients(u) / unit;
@@ -238,8 +242,11 @@ Values DerivativesRun::ReadAtVertices(const Fields& fields, const Derivatives& o
   {
     const Eigen::Index count = std::min(ColumnsAtOnce, u.cols() - first);
     const double columns = static_cast<double>(u.cols());
-    const LinearFits fits = FitByHeat(*surface.SharedAssembler(), positions,
-      operators.Normals().OfVertices, u.middleCols(first, count), fwhm, false, this->Parallel,
+    const LinearFits fits = FitByHeat(
+      *surface.SharedAssembler(), positions,
+      [&](Index i, const Eigen::RowVectorXd&) -> Eigen::Vector3d
+      { return operators.Normals().OfVertices.row(i).transpose(); },
+      u.middleCols(first, count), fwhm, this->Parallel,
       progress.Part(first / columns, (first + count) / columns));
     u.middleCols(first, count) = fits.Constants;
     this->MissedResidual = std::max(this->MissedResidual, fits.MissedResidual);
@@ -312,6 +319,15 @@ std::vector<Warning> DerivativesRun::FindOwnWarnings() const
   std::vector<Warning> warnings;
   AppendTurnedTriangles(this->Turned, warnings);
   AppendMissedResidual(this->MissedResidual, warnings);
+  if (this->Undetermined > 0)
+  {
+    Sentence text;
+    text
+      << this->Undetermined
+      << " boundary points have too few neighbours for second derivatives, and no Laplacian; use "
+         "a finer surface";
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
   if (!this->NothingKnown.Words().empty())
   {
     warnings.push_back({ this->NothingKnown, this->SurfaceVersion });

@@ -69,6 +69,7 @@ private:
   bool MissingOnCells = false;
   Sentence NothingKnown; ///< the warning that no triangle has data; otherwise empty
   Index Turned = 0;
+  Index Undetermined = 0; ///< vertices whose Laplacian is NaN
   double MissedResidual = 0.0;
 };
 

@@ -133,9 +133,8 @@ void DirectionFieldRun::MakeField(
   const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
     this->Domain->MakeTriangles(), hints, core, this->Parallel, progress, &this->Report);
-  this->WithoutDirection = settings.Method == DirectionMethod::Hints
-    ? static_cast<Index>((this->Field.array() == 0.0).rowwise().all().count())
-    : 0;
+  this->WithoutDirection = static_cast<Index>((this->Field.array() == 0.0).rowwise().all().count());
+  this->Method = settings.Method;
 }
 
 std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
@@ -143,13 +142,24 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
   Fingerprint inputs = this->SurfaceVersion;
   inputs.Add(this->FieldsVersion);
   std::vector<Warning> warnings;
-  if (this->WithoutDirection > 0)
+  const char* const triangles = this->WithoutDirection == 1 ? " triangle" : " triangles";
+  if (this->WithoutDirection > 0 && this->Method == DirectionMethod::Hints)
   {
     warnings.push_back({ Sentence("no direction of ")
-        << Word::Array("DirectionArray") << " reaches " << this->WithoutDirection
-        << (this->WithoutDirection == 1 ? " triangle" : " triangles")
+        << Word::Array("DirectionArray") << " reaches " << this->WithoutDirection << triangles
         << ", where the field is 0: directions along the surface spread across edges and fade",
       inputs });
+  }
+  if (this->WithoutDirection > 0 && this->Method == DirectionMethod::PrincipalCurvature)
+  {
+    Sentence text;
+    text << this->WithoutDirection << triangles
+         << " have the same curvature in all directions, as far as the rounding of the coordinates "
+            "tells, and the field is 0 there; "
+         << Word::Setting("Method") << " "
+         << Word::Choice("Method", DirectionMethod::CurvatureAligned, "CurvatureAligned")
+         << " continues it";
+    warnings.push_back({ text, inputs });
   }
   std::ostringstream text;
   this->AppendMissedResidual(this->Report.MissedResidual, warnings);

@@ -46,7 +46,8 @@ private:
   void RotateTurnedTriangles(double angle, TangentVectors& lines);
 
   TangentVectors Field; ///< before the rotation by Angle
-  Index WithoutDirection = 0; ///< triangles that no hint reaches
+  Index WithoutDirection = 0; ///< triangles where it is 0
+  DirectionMethod Method = DirectionMethod::PrincipalCurvature; ///< of the field
   Index Turned = 0; ///< triangles with another orientation than most, if that matters
   LineFieldReport Report;
 };

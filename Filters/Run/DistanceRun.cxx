@@ -22,9 +22,11 @@ constexpr double Never = std::numeric_limits<double>::infinity();
 void DistanceSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Choice({ "Method", "",
-                   "Heat: the heat method, with smooth level sets. Eikonal: fast marching, with "
-                   "smaller errors, exact in planes; also with speeds and start times." },
-    this->Method, { "Heat", "Eikonal" });
+                   "Automatic: Exact where it takes at most a second, without speeds and start "
+                   "times, and Eikonal otherwise. Exact: the lengths of the shortest ways over the "
+                   "triangles. Eikonal: fast marching, fast on large surfaces; also with speeds "
+                   "and start times. Heat: the heat method, with smooth level sets." },
+    this->Method, { "Heat", "Eikonal", "Exact", "Automatic" });
   visitor.Number({ "MaximumDistance", "coordinates",
                    "The largest distance of points and lines of sources from the surface, in the "
                    "unit of the coordinates: those farther away do not count. 0: any distance." },
@@ -56,79 +58,134 @@ void DistanceSettings::Check(const FieldSummary* fields, Problems& problems)
       << " is not set; allowed: an array on points, whose nonzero points are the sources, or "
          "sources as a second input");
   }
-  const std::pair<bool, const char*> timing[] = { { fields->Speeds, "SpeedArray" },
-    { fields->StartTimes, "SourceTimes" } };
-  for (const auto& [isSet, name] : timing)
+  const auto requireFronts = [&](bool has, const Sentence& purpose)
   {
-    if (isSet)
-    {
-      RequireChoice("Method", this->Method, DistanceMethod::Eikonal, "Eikonal",
-        Sentence(Word::Array(name)), problems);
-    }
-  }
-  if (this->HasSpeed())
-  {
-    RequireChoice("Method", this->Method, DistanceMethod::Eikonal, "Eikonal",
-      Sentence(Word::Setting("AlongSpeed"))
-        << " " << this->AlongSpeed << " and " << Word::Setting("AcrossSpeed") << " "
-        << this->AcrossSpeed,
+    const bool isAllowed =
+      this->Method == DistanceMethod::Eikonal || this->Method == DistanceMethod::Automatic;
+    Require(!has || isAllowed, Sentence(Word::Setting("Method")),
+      Word::Number("Method", this->Method),
+      Sentence(Word::NumberedChoice("Method", DistanceMethod::Eikonal, "Eikonal"))
+        << " or " << Word::NumberedChoice("Method", DistanceMethod::Automatic, "Automatic")
+        << " together with " << purpose,
       problems);
-  }
+  };
+  requireFronts(fields->Speeds, Sentence(Word::Array("SpeedArray")));
+  requireFronts(fields->StartTimes, Sentence(Word::Array("SourceTimes")));
+  requireFronts(this->HasSpeed(),
+    Sentence(Word::Setting("AlongSpeed"))
+      << " " << this->AlongSpeed << " and " << Word::Setting("AcrossSpeed") << " "
+      << this->AcrossSpeed);
   RequireDirections(
     *fields, "AlongSpeed", this->AlongSpeed, "AcrossSpeed", this->AcrossSpeed, problems);
 }
 
-Vector DistanceRun::SolveHeat(const SourceSet& sources, const ProgressMonitor& progress)
+/// Make the shapes of the triangles as fronts measure them, and forget what belongs to other ones.
+void DistanceRun::TakeSpeeds(const Fields& fields, const DistanceSettings& settings)
 {
-  const std::shared_ptr<const Assembler> operators = this->Domain->SharedAssembler();
-  if (this->HeatOperators != operators)
+  if (this->MeshOfSolvers != this->Domain->SharedInputMesh())
   {
-    this->HeatOperators.reset();
+    this->MeshOfSolvers = this->Domain->SharedInputMesh();
+    this->Eikonal.reset();
+    this->Exact.reset();
     this->Heat.reset();
-    this->Heat = std::make_unique<const HeatDistance>(
-      operators, HeatDistance::UsualStep, this->Parallel, progress.Part(0.0, 0.8));
-    this->HeatOperators = operators;
+    this->Projection.reset();
   }
-  return this->Heat->Find({ sources.Heat }, progress.Part(0.8, 1.0)).col(0);
+  this->Shapes = this->MakeShapes(fields, settings);
+  Fingerprint speeds;
+  speeds.AddBytes(this->Shapes.data(), this->Shapes.size() * sizeof(TriangleMesh::Shape));
+  if (this->Speeds != speeds)
+  {
+    this->Eikonal.reset();
+    this->Speeds = speeds;
+  }
 }
 
-/// Times per vertex, and the front that each comes from.
-GeodesicDistance::Arrival DistanceRun::Solve(const SourceSet& sources, FrontShapes triangles,
-  const DistanceSettings& settings, const ProgressMonitor& progress)
+DistanceMethod DistanceRun::FindMethod(DistanceMethod given, bool areTimes, double work) const
 {
-  const Surface& surface = *this->Domain;
-  const auto n = static_cast<std::size_t>(surface.Mesh().NumberOfVertices());
-  const bool byHeat = settings.Method == DistanceMethod::Heat;
-  GeodesicDistance::Arrival arrival{ std::vector<double>(n, Never), std::vector<Index>(n, -1) };
-  if (sources.Fronts.empty())
+  if (given != DistanceMethod::Automatic)
   {
-    return arrival;
+    return given;
   }
-  if (!byHeat || sources.NameOfLabel.size() > 1)
+  const bool isExact = !areTimes && ExactDistance::TakesAtMostASecond(*this->MeshOfSolvers, work);
+  return isExact ? DistanceMethod::Exact : DistanceMethod::Eikonal;
+}
+
+const EikonalDistance& DistanceRun::TakeEikonal(const ProgressMonitor& progress)
+{
+  if (!this->Eikonal)
   {
-    // Triangles of different speeds do not become others.
-    const auto mesh = triangles.empty() ? surface.SharedMesh() : surface.SharedInputMesh();
-    const GeodesicDistance fronts(mesh, std::move(triangles));
-    arrival = fronts.FindNearest(sources.Fronts, progress.Part(0.0, byHeat ? 0.2 : 1.0));
+    this->Eikonal =
+      std::make_unique<const EikonalDistance>(this->MeshOfSolvers, this->Domain->SharedMesh(),
+        VertexPositions(*this->Domain), this->Shapes, this->Parallel, progress);
   }
-  if (byHeat)
+  return *this->Eikonal;
+}
+
+const ExactDistance& DistanceRun::TakeExact()
+{
+  if (!this->Exact)
   {
-    const Vector distances = this->SolveHeat(sources, progress.Part(0.2, 1.0));
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      arrival.Times[i] = distances[static_cast<Eigen::Index>(i)];
-      if (sources.NameOfLabel.size() == 1)
-      {
-        arrival.Sources[i] = arrival.Times[i] < Never ? 0 : -1;
-      }
-    }
+    this->Exact = std::make_unique<const ExactDistance>(this->MeshOfSolvers);
+  }
+  return *this->Exact;
+}
+
+Vector DistanceRun::SolveHeat(const SourceSet& sources, const ProgressMonitor& progress)
+{
+  if (!this->Heat)
+  {
+    this->Heat = std::make_unique<const HeatDistance>(this->Domain->SharedAssembler(),
+      HeatDistance::UsualStep, this->Parallel, progress.Part(0.0, 0.8));
+  }
+  std::vector<HeatSource> heat;
+  for (const SourcePiece& piece : sources.Pieces)
+  {
+    AppendHeat(*this->MeshOfSolvers, piece, heat);
+  }
+  return this->Heat->Find({ heat }, progress.Part(0.8, 1.0)).col(0);
+}
+
+bool DistanceRun::SourceSet::HaveOneName() const
+{
+  return std::all_of(this->Names.begin(), this->Names.end(),
+    [this](double name) { return name == this->Names.front(); });
+}
+
+/// Times per vertex, and the piece of a source that each comes from.
+GeodesicDistance::Arrival DistanceRun::Solve(
+  const SourceSet& sources, DistanceMethod method, const ProgressMonitor& progress)
+{
+  const auto n = static_cast<std::size_t>(this->MeshOfSolvers->NumberOfVertices());
+  if (sources.Pieces.empty())
+  {
+    return { std::vector<double>(n, Never), std::vector<Index>(n, -1) };
+  }
+  if (method == DistanceMethod::Exact)
+  {
+    return this->TakeExact().Find(sources.Pieces, Never, progress);
+  }
+  if (method == DistanceMethod::Eikonal)
+  {
+    const EikonalDistance& eikonal = this->TakeEikonal(progress.Part(0.0, 0.2));
+    return eikonal.Find(sources.Pieces, sources.Starts, progress.Part(0.2, 1.0));
+  }
+  GeodesicDistance::Arrival arrival{ std::vector<double>(n, Never), std::vector<Index>(n, 0) };
+  if (!sources.HaveOneName())
+  {
+    arrival = this->Solve(
+      sources, this->FindMethod(DistanceMethod::Automatic, false, 1.0), progress.Part(0.0, 0.2));
+  }
+  const Vector distances = this->SolveHeat(sources, progress.Part(0.2, 1.0));
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    arrival.Times[i] = distances[static_cast<Eigen::Index>(i)];
+    arrival.Sources[i] = arrival.Times[i] < Never ? arrival.Sources[i] : -1;
   }
   return arrival;
 }
 
 /// The means at the vertices over the triangles that fronts cross.
-Values DistanceRun::FindGradient(
-  const std::vector<double>& times, const FrontShapes& triangles) const
+Values DistanceRun::FindGradient(const std::vector<double>& times) const
 {
   const TriangleMesh& mesh = this->Domain->InputMesh();
   const Points positions = VertexPositions(*this->Domain);
@@ -146,7 +203,7 @@ Values DistanceRun::FindGradient(
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const auto row = static_cast<std::size_t>(t);
-    bool isCrossed = !IsBarrier(triangles, t);
+    bool isCrossed = !IsBarrier(this->Shapes, t);
     for (int a = 0; a < 3; ++a)
     {
       isCrossed =
@@ -171,52 +228,53 @@ Values DistanceRun::FindGradient(
   return gradient;
 }
 
-void DistanceRun::Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress)
+bool DistanceRun::PrepareSurface(
+  const BlockInput& drawn, DistanceSettings& settings, const ProgressMonitor& progress)
 {
-  auto& settings = static_cast<DistanceSettings&>(given);
-  const BlockInput drawn = WithoutGivenAreas(input);
   SurfaceOptions options;
   options.MergeCoincidentPoints = settings.MergeCoincidentPoints;
   options.MergeTolerance = settings.MergeTolerance;
   options.IntrinsicDelaunay = true;
   options.Boundaries = BoundaryEdges::Keep; // no way leaves the surface
-  if (!this->Prepare(drawn, settings, options, progress.Part(0.0, 0.2)))
+  return this->Prepare(drawn, settings, options, progress);
+}
+
+void DistanceRun::Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress)
+{
+  auto& settings = static_cast<DistanceSettings&>(given);
+  const BlockInput drawn = WithoutGivenAreas(input);
+  if (!this->PrepareSurface(drawn, settings, progress.Part(0.0, 0.2)))
   {
     return;
   }
   this->Results.clear();
-  const Surface& surface = *this->Domain;
-  const TriangleMesh& mesh = surface.InputMesh();
+  const TriangleMesh& mesh = this->Domain->InputMesh();
   const Fields fields = input.ReadFields();
-  const FrontShapes triangles = this->MakeShapes(fields, settings);
+  this->TakeSpeeds(fields, settings);
   SourceSet sources =
-    this->FindSources(drawn, fields, triangles, settings.MaximumDistance, progress.Part(0.2, 0.3));
-  const GeodesicDistance::Arrival arrival =
-    this->Solve(sources, triangles, settings, progress.Part(0.3, 0.95));
+    this->FindSources(drawn, fields, settings.MaximumDistance, progress.Part(0.2, 0.3));
+  const bool haveStarts =
+    !fields.StartTimes.empty() || (fields.Sources && !fields.Sources->StartTimes.empty());
+  const bool areTimes = haveStarts || !fields.Speeds.Values.empty() || settings.HasSpeed();
+  const DistanceMethod method = this->FindMethod(settings.Method, areTimes, 1.0);
+  const GeodesicDistance::Arrival arrival = this->Solve(sources, method, progress.Part(0.3, 0.95));
 
   const Index n = mesh.NumberOfVertices();
   Values times(n, 1);
   Values nearest(n, 1);
   const double none = sources.AreShapes ? -1.0 : 0.0;
-  bool areIntegers = true;
-  for (const double name : sources.NameOfLabel)
-  {
-    areIntegers =
-      areIntegers && name == std::floor(name) && std::abs(name) <= std::numeric_limits<int>::max();
-  }
+  const bool areIntegers = std::all_of(sources.Names.begin(), sources.Names.end(),
+    [](double name)
+    { return name == std::floor(name) && std::abs(name) <= std::numeric_limits<int>::max(); });
   Index unreached = 0;
   for (Index i = 0; i < n; ++i)
   {
     const auto row = static_cast<std::size_t>(i);
-    const Index front = arrival.Times[row] < Never ? arrival.Sources[row] : -1;
+    const Index piece = arrival.Times[row] < Never ? arrival.Sources[row] : -1;
     times(i, 0) = arrival.Times[row] * mesh.LengthUnit();
-    nearest(i, 0) = front < 0 ? none
-                              : sources.NameOfLabel[static_cast<std::size_t>(
-                                  sources.Fronts[static_cast<std::size_t>(front)].Label)];
+    nearest(i, 0) = piece < 0 ? none : sources.Names[static_cast<std::size_t>(piece)];
     unreached += arrival.Times[row] < Never ? 0 : 1;
   }
-  const bool areTimes =
-    !fields.Speeds.Values.empty() || !fields.StartTimes.empty() || settings.HasSpeed();
   const auto add = [this](const char* name, OutputType type, Values rows, double elsewhere)
   {
     const Eigen::Index columns = rows.cols();
@@ -231,7 +289,7 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
   if (settings.ComputeGradient)
   {
     add(areTimes ? "ArrivalTimeGradient" : "DistanceGradient", OutputType::Double,
-      this->FindGradient(arrival.Times, triangles), 0.0);
+      this->FindGradient(arrival.Times), 0.0);
   }
   this->AllAreSources = !areTimes && this->Domain->Mesh().NumberOfVertices() > 0 &&
     (this->Results.front().Rows.array() == 0.0).all();
@@ -239,8 +297,11 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
     Output::OfNumber("NumberOfSources", sources.Count, Combination::Sum, OutputType::Integer));
   this->Results.push_back(
     Output::OfNumber("NumberOfUnreachedPoints", unreached, Combination::Sum, OutputType::Integer));
-  sources.Fronts = {};
-  sources.Heat = {};
+  this->Results.push_back(Output::OfNumber(
+    "EffectiveMethod", static_cast<double>(method), Combination::Smallest, OutputType::Integer));
+  sources.Pieces = {};
+  sources.Starts = {};
+  sources.Names = {};
   this->Found = std::move(sources);
   this->Complete(drawn, settings);
 }
@@ -266,6 +327,12 @@ void DistanceRun::RequireSource(const std::vector<const DistanceRun*>& runs)
     return;
   }
   const Sentence mask(Word::Array("MaskArray"));
+  if (all.AreShapes && all.TooFar == 0)
+  {
+    throw InputError(Sentence("no source is on the surface: ")
+      << all.Outside << " are on no triangle that " << mask
+      << " and speeds above 0 leave; allowed: one source on such a triangle");
+  }
   if (all.AreShapes)
   {
     throw InputError(Sentence("no source is on the surface: of the points and lines, ")

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Geodesics/EikonalDistance.h"
+#include "Core/Geodesics/ExactDistance.h"
 #include "Run/DistanceSources.h"
 #include "Run/SurfaceRun.h"
 #include "Run/WarningLog.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -15,13 +18,15 @@ namespace SurfaceDiffusion
 enum class DistanceMethod
 {
   Heat,
-  Eikonal
+  Eikonal,
+  Exact,
+  Automatic
 };
 
 /// Distances from sources in the user's terms.
 struct DistanceSettings : Settings
 {
-  DistanceMethod Method = DistanceMethod::Heat;
+  DistanceMethod Method = DistanceMethod::Automatic;
   double MaximumDistance = 0.0;
   double AlongSpeed = 1.0;
   double AcrossSpeed = 1.0;
@@ -51,43 +56,71 @@ public:
   void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
   bool ExcludesMasked() const override { return true; }
 
+  /// A sparse matrix by rows.
+  struct Matrix
+  {
+    std::vector<double> Data;
+    std::vector<Index> Columns; ///< ascending in each row
+    std::vector<std::int64_t> Begin = { 0 };
+  };
+
+  /// The distances up to a cutoff, in coordinate units or time, from each of several points of the
+  /// input, one row each; empty: from all. Rows of points that are on no triangle are empty.
+  /// Settings and inputs are those of Update(), but for the sources.
+  Matrix FindEach(const BlockInput& input, Settings& given, const std::vector<Index>& points,
+    double cutoff, const ProgressMonitor& progress);
+
   /// Throws InputError, which says why, if none of the surfaces has a source. If all triangles that
   /// the mask leaves have no area, that is no error.
   static void RequireSource(const std::vector<const DistanceRun*>& runs);
 
 private:
-  /// The sources as fronts and as heat, and what NearestSource says of each label.
   struct SourceSet
   {
-    std::vector<FrontSource> Fronts;
-    std::vector<HeatSource> Heat;
-    std::vector<double> NameOfLabel;
+    std::vector<SourcePiece> Pieces; ///< on triangles of InputMesh()
+    std::vector<double> Starts; ///< per piece, in units of the mesh; empty: 0
+    std::vector<double> Names; ///< per piece, what NearestSource says
     Index Count = 0; ///< of sources on the surface
     Index Given = 0; ///< of all
     Index TooFar = 0, Outside = 0;
     bool AreShapes = false;
     Sentence Farness; ///< of shapes: a warning, or empty
+
+    bool HaveOneName() const;
   };
 
   std::vector<Warning> FindOwnWarnings() const override;
+  bool PrepareSurface(
+    const BlockInput& drawn, DistanceSettings& settings, const ProgressMonitor& progress);
   FrontShapes MakeShapes(const Fields& fields, const DistanceSettings& settings) const;
-  SourceSet FindSources(const BlockInput& input, const Fields& fields, const FrontShapes& triangles,
-    double maximumDistance, const ProgressMonitor& progress);
+  void TakeSpeeds(const Fields& fields, const DistanceSettings& settings);
+  SourceSet FindSources(const BlockInput& input, const Fields& fields, double maximumDistance,
+    const ProgressMonitor& progress);
   SourceSet FindMarked(const Fields& fields) const;
+  SourceSet FindPlaced(const SourceShapes& shapes) const;
   SourceSet FindProjected(const BlockInput& input, const SourceShapes& shapes,
-    const FrontShapes& triangles, double maximumDistance, const ProgressMonitor& progress);
-  GeodesicDistance::Arrival Solve(const SourceSet& sources, FrontShapes triangles,
-    const DistanceSettings& settings, const ProgressMonitor& progress);
+    double maximumDistance, const ProgressMonitor& progress);
+  SourcePiece PieceOfVertex(Index vertex, Index number) const;
+  /// That is taken. areTimes: there are speeds or start times. work: how often the whole surface is
+  /// passed over.
+  DistanceMethod FindMethod(DistanceMethod given, bool areTimes, double work) const;
+  const EikonalDistance& TakeEikonal(const ProgressMonitor& progress);
+  const ExactDistance& TakeExact();
+  GeodesicDistance::Arrival Solve(
+    const SourceSet& sources, DistanceMethod method, const ProgressMonitor& progress);
   Vector SolveHeat(const SourceSet& sources, const ProgressMonitor& progress);
-  Values FindGradient(const std::vector<double>& times, const FrontShapes& triangles) const;
+  Values FindGradient(const std::vector<double>& times) const;
 
-  SourceSet Found; ///< without its fronts
+  SourceSet Found; ///< without its pieces
   bool AllAreSources = false;
-  /// Of the surface, kept for other sources.
-  std::shared_ptr<const Assembler> HeatOperators;
+  /// Of the mesh and the speeds, kept for other sources.
+  std::shared_ptr<const TriangleMesh> MeshOfSolvers;
+  Fingerprint Speeds;
+  FrontShapes Shapes; ///< of InputMesh(); empty: its own
+  std::unique_ptr<const EikonalDistance> Eikonal;
+  std::unique_ptr<const ExactDistance> Exact;
   std::unique_ptr<const HeatDistance> Heat;
   std::unique_ptr<const SourceProjection> Projection;
-  Fingerprint ProjectionVersion;
 };
 
 } // namespace SurfaceDiffusion

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -93,7 +94,18 @@ FrontShapes DistanceRun::MakeShapes(const Fields& fields, const DistanceSettings
     settings.AlongSpeed, settings.AcrossSpeed);
 }
 
-/// The nonzero points of the data, with the label of their value.
+/// A vertex as a source of this number.
+SourcePiece DistanceRun::PieceOfVertex(Index vertex, Index number) const
+{
+  const TriangleMesh& mesh = *this->MeshOfSolvers;
+  const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(
+    mesh.VertexCornersBegin()[static_cast<std::size_t>(vertex)])];
+  std::array<double, 3> place = { 0.0, 0.0, 0.0 };
+  place[static_cast<std::size_t>(corner % 3)] = 1.0;
+  return { corner / 3, place, place, number, number, number };
+}
+
+/// The nonzero points of the data.
 DistanceRun::SourceSet DistanceRun::FindMarked(const Fields& fields) const
 {
   if (fields.Data.OnCells)
@@ -125,45 +137,79 @@ DistanceRun::SourceSet DistanceRun::FindMarked(const Fields& fields) const
       continue;
     }
     ++set.Count;
-    set.NameOfLabel.push_back(mark);
+    set.Pieces.push_back(
+      this->PieceOfVertex(surface.VertexOf(static_cast<Index>(i)), static_cast<Index>(i)));
+    set.Names.push_back(mark);
     if (!starts.empty())
     {
-      counts[static_cast<std::size_t>(i)] = 1;
+      const auto row = static_cast<std::size_t>(i);
+      counts[row] = 1;
+      set.Starts.push_back(starts[row] / surface.InputMesh().LengthUnit());
     }
   }
   RequireFinite(starts, "SourceTimes", false, false, counts);
-  std::vector<double>& names = set.NameOfLabel;
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  const double unit = surface.InputMesh().LengthUnit();
-  for (Eigen::Index i = 0; i < marks.rows(); ++i)
+  return set;
+}
+
+/// Places that are given on the surface.
+DistanceRun::SourceSet DistanceRun::FindPlaced(const SourceShapes& shapes) const
+{
+  const Surface& surface = *this->Domain;
+  const TriangleMesh& mesh = surface.InputMesh();
+  std::map<Index, Index> meshTriangles; // of those of the input that are wanted
+  for (const Index row : shapes.OfTriangles)
   {
-    const auto point = static_cast<Index>(i);
-    const Index vertex = surface.VertexOf(point);
-    if (vertex < 0 || marks(i, 0) == 0.0 || std::isnan(marks(i, 0)))
+    meshTriangles[row] = -1;
+  }
+  for (Index t = 0; !meshTriangles.empty() && t < mesh.NumberOfTriangles(); ++t)
+  {
+    const Index row = surface.InputTriangle(mesh.InputTriangle()[static_cast<std::size_t>(t)]);
+    const auto wanted = meshTriangles.find(row);
+    if (wanted != meshTriangles.end() && !IsBarrier(this->Shapes, t))
+    {
+      wanted->second = t;
+    }
+  }
+  SourceSet set;
+  set.AreShapes = true;
+  set.Given = static_cast<Index>(shapes.OfPoints.size() + shapes.OfTriangles.size());
+  for (Index k = 0; k < set.Given; ++k)
+  {
+    const auto row = static_cast<std::size_t>(k);
+    const bool isPoint = !shapes.OfPoints.empty();
+    const Index at =
+      isPoint ? surface.VertexOf(shapes.OfPoints[row]) : meshTriangles.at(shapes.OfTriangles[row]);
+    ++(at < 0 ? set.Outside : set.Count);
+    if (at < 0)
     {
       continue;
     }
-    const double start = starts.empty() ? 0.0 : starts[static_cast<std::size_t>(i)] / unit;
-    const auto label = std::lower_bound(names.begin(), names.end(), marks(i, 0)) - names.begin();
-    set.Fronts.push_back({ vertex, start, static_cast<Index>(label), point, start });
-    set.Heat.push_back({ vertex });
+    SourcePiece piece{ at, {}, {}, k, k, k };
+    for (Eigen::Index a = 0; a < 3 && !isPoint; ++a)
+    {
+      piece.From[static_cast<std::size_t>(a)] = shapes.Places(k, a);
+    }
+    piece.To = piece.From;
+    set.Pieces.push_back(isPoint ? this->PieceOfVertex(at, k) : piece);
+    set.Names.push_back(k);
+    if (!shapes.StartTimes.empty())
+    {
+      set.Starts.push_back(shapes.StartTimes[row] / mesh.LengthUnit());
+    }
   }
   return set;
 }
 
 DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
-  const SourceShapes& shapes, const FrontShapes& triangles, double maximumDistance,
-  const ProgressMonitor& progress)
+  const SourceShapes& shapes, double maximumDistance, const ProgressMonitor& progress)
 {
   const Surface& surface = *this->Domain;
-  if (!this->Projection || this->ProjectionVersion != this->SurfaceVersion)
+  if (!this->Projection)
   {
     this->Projection = std::make_unique<const SourceProjection>(input.ReadSurface(), surface);
-    this->ProjectionVersion = this->SurfaceVersion;
   }
-  const ProjectedSources found =
-    this->Projection->Project(shapes, maximumDistance, triangles, progress);
+  ProjectedSources found =
+    this->Projection->Project(shapes, maximumDistance, this->Shapes, progress);
   SourceSet set;
   set.AreShapes = true;
   set.Count = found.Count;
@@ -175,35 +221,29 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
     set.Farness = DescribeFarPoints("points of the sources", found.MedianDistance,
       DiagonalOf(surface.Points(), Reduction::Serial()));
   }
-  auto nextPoint = static_cast<Index>(shapes.Places.rows());
   for (const SourcePiece& piece : found.Pieces)
   {
-    AppendFronts(surface.InputMesh(), triangles, piece, nextPoint, set.Fronts);
-    AppendHeat(surface.InputMesh(), piece, set.Heat);
+    set.Names.push_back(piece.Label);
+    if (!shapes.StartTimes.empty())
+    {
+      set.Starts.push_back(shapes.StartTimes[static_cast<std::size_t>(piece.Label)] /
+        surface.InputMesh().LengthUnit());
+    }
   }
-  // Labels that count, in their order.
-  std::vector<double>& names = set.NameOfLabel;
-  for (const FrontSource& front : set.Fronts)
-  {
-    names.push_back(front.Label);
-  }
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  for (FrontSource& front : set.Fronts)
-  {
-    front.Label = static_cast<Index>(
-      std::lower_bound(names.begin(), names.end(), static_cast<double>(front.Label)) -
-      names.begin());
-  }
+  set.Pieces = std::move(found.Pieces);
   return set;
 }
 
 DistanceRun::SourceSet DistanceRun::FindSources(const BlockInput& input, const Fields& fields,
-  const FrontShapes& triangles, double maximumDistance, const ProgressMonitor& progress)
+  double maximumDistance, const ProgressMonitor& progress)
 {
-  return fields.Sources
-    ? this->FindProjected(input, *fields.Sources, triangles, maximumDistance, progress)
-    : this->FindMarked(fields);
+  if (!fields.Sources)
+  {
+    return this->FindMarked(fields);
+  }
+  const bool arePlaced = !fields.Sources->OfPoints.empty() || !fields.Sources->OfTriangles.empty();
+  return arePlaced ? this->FindPlaced(*fields.Sources)
+                   : this->FindProjected(input, *fields.Sources, maximumDistance, progress);
 }
 
 } // namespace SurfaceDiffusion

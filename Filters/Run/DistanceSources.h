@@ -13,10 +13,14 @@
 namespace SurfaceDiffusion
 {
 
-/// Points and lines anywhere in space, whose nearest places on a surface are sources.
+/// Points and lines anywhere in space, whose nearest places on a surface are sources, or places on it.
 struct SourceShapes
 {
   Points Places; ///< m x 3, coordinates; finite
+  /// In place of coordinates, one per source: points of the surface, whose Places do not count, or
+  /// triangles of the input, in which Places are barycentric coordinates. Both empty: coordinates.
+  std::vector<Index> OfPoints, OfTriangles;
+  std::vector<double> StartTimes; ///< per row of Places; empty: 0
   /// Pairs of rows of Places: the straight parts of lines. Rows in no pair are points.
   std::vector<std::array<Index, 2>> Segments;
   std::vector<char> Hidden; ///< per row, nonzero: takes no part, and is in no pair; empty: none

@@ -51,10 +51,10 @@ void HarmonicMapSettings::Visit(SettingVisitor& visitor)
                    "Treat u and -u as equal, as for principal directions. The sign of the result "
                    "has no meaning." },
     this->LineField);
-  visitor.Switch({ "MoveVertices", "",
-                   "Move the points so that the normals of the triangles match the regularised "
-                   "normals: mesh denoising.",
-                   SettingScope::Output },
+  visitor.Switch(
+    { "MoveVertices", "",
+      "Move the points so that the triangles turn as the normals have turned: mesh denoising.",
+      SettingScope::Output },
     this->MoveVertices);
 }
 
@@ -175,15 +175,16 @@ std::vector<Output> HarmonicMapSettings::Finish(const RunState& state, RunResult
   return outputs;
 }
 
-/// The points of the input, moved to fit the normals of the state.
+/// The points of the input, moved as the vectors have turned.
 Points HarmonicMapSettings::MovePoints(const RunState& state, VertexMotion& motion) const
 {
   const Surface& surface = state.Surface;
   const TriangleMesh& mesh = surface.InputMesh();
   const IterationLimits limits = WithoutInertia(this->DescribeModel().Limits);
-  const Points moved = UpdateVerticesFromNormals(mesh, surface.Points(), state.Path.State(),
-    UpdateRange * state.Units.MeanEdgeLength, motion, limits,
-    this->Solver != SolverMethod::ConjugateGradient, state.Parallel, state.Progress);
+  const Points moved =
+    UpdateVerticesFromNormals(mesh, surface.Points(), *state.Path.CurrentModel().GivenData(),
+      state.Path.State(), UpdateRange * state.Units.MeanEdgeLength, motion, limits,
+      this->Solver != SolverMethod::ConjugateGradient, state.Parallel, state.Progress);
   Points points = surface.Points();
   for (Eigen::Index i = 0; i < moved.rows(); ++i)
   {

@@ -101,10 +101,17 @@ void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
 {
   WarnOf(found.ContradictingPlaces, " place has different values: their weighted mean counts",
     " places have different values: their weighted means count", result);
-  if (found.HasTooFewValues)
+  if (found.PartsWithTooFewValues > 0)
   {
-    result.WarnOnce(Sentence("fewer than 3 places have a value, too few for ")
-      << Word::Setting("AutomaticSmoothing") << ": the values hold exactly");
+    Sentence text("fewer than 3 places");
+    if (found.Parts > 1)
+    {
+      text << " of " << found.PartsWithTooFewValues
+           << (found.PartsWithTooFewValues == 1 ? " connected component"
+                                                : " connected components");
+    }
+    result.WarnOnce(text << " have a value, too few for " << Word::Setting("AutomaticSmoothing")
+                         << ": the values hold exactly" << (found.Parts > 1 ? " there" : ""));
   }
   if (found.HasUnknownError)
   {

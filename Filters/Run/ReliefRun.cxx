@@ -80,6 +80,14 @@ std::vector<Sentence> DescribeRelief(const Relief& relief, const Vector& wanted)
          << " edges of more than two triangles, where there is no relief";
     sentences.push_back(text);
   }
+  if (relief.RepeatedTriangles > 0)
+  {
+    text = Sentence();
+    text
+      << relief.RepeatedTriangles
+      << " triangles have the same corners as others, and count once: printing wants each one once";
+    sentences.push_back(text);
+  }
   if (relief.CrossingTrianglesBefore > 0)
   {
     text = Sentence();

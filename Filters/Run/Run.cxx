@@ -279,6 +279,10 @@ PointData Run::MakeData(Block& block, const Fields& fields, const Reduction& pro
     reduction.Max(&components, 1);
     const auto columns = static_cast<Eigen::Index>(components);
     const Eigen::Index n = block.Surface->Mesh().NumberOfVertices();
+    if (processes.Any(n > 0 && data.Given.cols() != columns))
+    {
+      throw std::runtime_error("the data have another number of components in another process");
+    }
     const bool hasFactors = processes.Any(data.FidelityFactors.size() > 0);
     Values all = Values::Ones(n, columns + 3);
     if (n > 0)

@@ -118,7 +118,9 @@ void RequireFiniteCoordinates(const Points& points, const ParallelFor& parallel)
   if (i < count)
   {
     std::ostringstream text;
-    text << "point " << i << " of the input has coordinates that are not finite";
+    text << "point " << i
+         << " of the input has coordinates that are not finite; allowed: finite ones, "
+         << "also of points that nothing uses, which ParaView's Clean (vtkCleanPolyData) removes";
     throw std::runtime_error(text.str());
   }
 }

@@ -241,7 +241,7 @@ std::vector<Output> TextureSettings::Finish(const RunState& state, RunResult&) c
   outputs.push_back({ "Texture", Place::PerVertex, OutputType::Real, texture });
   if (!this->ColorOutput)
   {
-    outputs[0].Active = Role::Scalars;
+    outputs.back().Active = Role::Scalars;
     return outputs;
   }
   const auto mix = [this](const Vector& shares) -> Values

@@ -38,10 +38,11 @@ std::string ExplainObstacle(const PatternForecast& forecast, double rate1, doubl
     case PatternObstacle::RatesTooClose:
     {
       const bool first = forecast.FirstIsFaster;
+      const double ratio = first ? rate1 / rate2 : rate2 / rate1;
       return std::string("no pattern grows: the diffusion rate of ") + (first ? "u1" : "u2") +
         " must be more than " + Quantity(forecast.CriticalRatio) + " times that of " +
-        (first ? "u2" : "u1") + ", and is " + Quantity(first ? rate1 / rate2 : rate2 / rate1) +
-        " times";
+        (first ? "u2" : "u1") +
+        (std::isnan(ratio) ? ", and both are 0" : ", and is " + Quantity(ratio) + " times");
     }
     case PatternObstacle::None:
       break;

@@ -224,7 +224,8 @@ FieldSummary InputFields::Summarize() const
   summary.DataName = this->DataWord();
   summary.Sources = this->Sources != nullptr;
   summary.Speeds = this->Speeds.Values.has_value();
-  summary.StartTimes = this->StartTimes.has_value();
+  summary.StartTimes =
+    this->StartTimes.has_value() || (this->Sources && !this->Sources->StartTimes.empty());
   summary.Directions = this->Directions.Values.has_value();
   summary.Fixed = this->Fixed.Values.has_value();
   summary.Rates = this->Rates.has_value();
@@ -333,18 +334,28 @@ void InputFields::SetSamples(const DoubleArray& places, const DoubleArray& value
   this->Samples = std::move(samples);
 }
 
-void InputFields::SetSources(
-  const DoubleArray& places, const LongArray& segments, const FlagArray& hidden)
+void InputFields::SetSources(const std::optional<DoubleArray>& places,
+  const std::optional<LongArray>& segments, const std::optional<FlagArray>& hidden,
+  const std::optional<LongArray>& rows, const std::optional<FactorArray>& starts)
 {
   auto sources = std::make_shared<SourceShapes>();
-  sources->Places =
-    Eigen::Map<const Points>(places.data(), static_cast<Eigen::Index>(places.shape(0)), 3);
-  for (std::size_t k = 0; k + 1 < segments.size(); k += 2)
+  if (places)
+  {
+    sources->Places =
+      Eigen::Map<const Points>(places->data(), static_cast<Eigen::Index>(places->shape(0)), 3);
+  }
+  for (std::size_t k = 0; segments && k + 1 < segments->size(); k += 2)
   {
     sources->Segments.push_back(
-      { static_cast<Index>(segments.data()[k]), static_cast<Index>(segments.data()[k + 1]) });
+      { static_cast<Index>(segments->data()[k]), static_cast<Index>(segments->data()[k + 1]) });
   }
-  sources->Hidden.assign(hidden.data(), hidden.data() + hidden.size());
+  sources->Hidden = ReadFlags(hidden);
+  if (rows)
+  {
+    std::vector<Index>& numbers = places ? sources->OfTriangles : sources->OfPoints;
+    numbers.assign(rows->data(), rows->data() + rows->size());
+  }
+  sources->StartTimes = ReadNumbers(starts);
   this->Sources = std::move(sources);
 }
 
@@ -400,6 +411,9 @@ Fingerprint InputFields::Version() const
     add(this->Sources->Places);
     add(this->Sources->Segments);
     add(this->Sources->Hidden);
+    add(this->Sources->OfPoints);
+    add(this->Sources->OfTriangles);
+    add(this->Sources->StartTimes);
   }
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
   for (const bool onFaces :

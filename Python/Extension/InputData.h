@@ -128,8 +128,11 @@ public:
 
   void SetSamples(const DoubleArray& places, const DoubleArray& values,
     const std::optional<FactorArray>& weights, const std::string& name);
-  /// segments: pairs of rows of `places`, the straight parts of lines.
-  void SetSources(const DoubleArray& places, const LongArray& segments, const FlagArray& hidden);
+  /// places: coordinates or, with rows, barycentric coordinates in these triangles; none: rows are
+  /// points. segments: pairs of rows of `places`, the straight parts of lines.
+  void SetSources(const std::optional<DoubleArray>& places,
+    const std::optional<LongArray>& segments, const std::optional<FlagArray>& hidden,
+    const std::optional<LongArray>& rows, const std::optional<FactorArray>& starts);
 
   /// The same with a panel of the data's columns, which Components counts.
   InputFields Columns(int first, int count) const;

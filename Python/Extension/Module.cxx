@@ -11,7 +11,6 @@
 #include "Run/RunSettings.h"
 #include "SettingsTable.h"
 #include "ShapeFunctions.h"
-#include "SurfaceDistances.h"
 #include "SurfaceFields.h"
 #include "SurfaceOperators.h"
 #include "Threads.h"
@@ -153,7 +152,8 @@ NB_MODULE(_core, m)
       "data_are_terms"_a, "on_faces"_a)
     .def("set_samples", &InputFields::SetSamples, "places"_a, "values"_a, "weights"_a.none(),
       "name"_a = "")
-    .def("set_sources", &InputFields::SetSources, "places"_a, "segments"_a, "hidden"_a)
+    .def("set_sources", &InputFields::SetSources, "places"_a.none(), "segments"_a.none(),
+      "hidden"_a.none(), "rows"_a.none() = nb::none(), "starts"_a.none() = nb::none())
     .def(
       "set_speeds",
       [](InputFields& self, const FactorArray& speeds, bool onFaces) {
@@ -228,22 +228,6 @@ NB_MODULE(_core, m)
     .def("length_unit", &SurfaceFields::LengthUnit)
     .def("mean_edge_length", &SurfaceFields::MeanEdgeLength);
 
-  nb::class_<SurfaceDistances>(m, "Distances")
-    .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
-           const std::optional<FactorArray>&, const std::optional<DoubleArray>&, bool, double,
-           double, const nb::object&>(),
-      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "slowness"_a.none(), "directions"_a.none(),
-      "directions_on_faces"_a, "along"_a, "across"_a, "progress"_a.none())
-    .def("seams", &SeamsOf<SurfaceDistances>)
-    .def("has_point", &SurfaceDistances::HasPoint, "point"_a)
-    .def("has_triangle", &SurfaceDistances::HasTriangle, "row"_a)
-    .def("project", &SurfaceDistances::Project, "points"_a, "progress"_a.none())
-    .def("from_all", &SurfaceDistances::FromAll, "rows"_a, "barycentric"_a.none(), "starts"_a,
-      "apart"_a, "progress"_a.none())
-    .def(
-      "by_heat", &SurfaceDistances::ByHeat, "rows"_a, "barycentric"_a.none(), "progress"_a.none())
-    .def("from_each", &SurfaceDistances::FromEach, "points"_a, "cutoff"_a, "progress"_a.none());
-
   nb::class_<PythonRuns>(m, "SurfaceRuns")
     .def(nb::init<std::string>(), "function"_a)
     .def("update", &PythonRuns::Update, "surfaces"_a, "settings"_a, "progress"_a.none())
@@ -253,6 +237,8 @@ NB_MODULE(_core, m)
     .def("numbers", &PythonRuns::GetNumbers)
     .def("outputs", &PythonRuns::ListOutputs, "surface"_a)
     .def("write", &PythonRuns::Write, "surface"_a, "number"_a, "output"_a, "source"_a)
+    .def("find_each", &PythonRuns::FindEach, "surface"_a, "settings"_a, "points"_a.none(),
+      "cutoff"_a, "progress"_a.none())
     .def("turned_faces", &PythonRuns::TurnedFaces, "surface"_a, "source"_a);
   BindShapeFunctions(m);
   BindPieceFunctions(m);

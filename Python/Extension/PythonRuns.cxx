@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PythonRuns.h"
 
+#include "NewArrays.h"
 #include "OutputTable.h"
 #include "PythonProgress.h"
 #include "Run/BlockSentences.h"
@@ -65,20 +66,31 @@ PythonRuns::PythonRuns(std::string name)
   MakeRun(this->Name);
 }
 
+std::unique_ptr<Settings> PythonRuns::TakeSettings(
+  const nb::dict& values, const std::vector<FieldSummary>& summaries) const
+{
+  std::unique_ptr<Settings> settings = MakeSettings(this->Name);
+  AssignSettings(*settings, values);
+  Problems problems;
+  for (const FieldSummary& summary : summaries)
+  {
+    settings->Check(&summary, problems);
+  }
+  ThrowProblems(std::move(problems));
+  return settings;
+}
+
 void PythonRuns::Update(
   const nb::list& surfaces, const nb::dict& values, const nb::object& progress)
 {
   const UseGuard guard(this->InUse);
   const std::vector<const InputFields*> given = ListInputs(surfaces);
-  const std::unique_ptr<Settings> settings = MakeSettings(this->Name);
-  AssignSettings(*settings, values);
-  Problems problems;
+  std::vector<FieldSummary> summaries;
   for (const InputFields* const fields : given)
   {
-    const FieldSummary summary = fields->Summarize();
-    settings->Check(&summary, problems);
+    summaries.push_back(fields->Summarize());
   }
-  ThrowProblems(std::move(problems));
+  const std::unique_ptr<Settings> settings = this->TakeSettings(values, summaries);
   this->IsComplete = false;
   this->Runs.resize(given.size());
   PythonProgress(progress).Run(
@@ -114,6 +126,37 @@ void PythonRuns::Update(
     this->BlockNames.push_back(fields->Block);
   }
   this->IsComplete = true;
+}
+
+nb::tuple PythonRuns::FindEach(const InputFields& surface, const nb::dict& values,
+  const std::optional<LongArray>& points, double cutoff, const nb::object& progress)
+{
+  const UseGuard guard(this->InUse);
+  FieldSummary summary = surface.Summarize();
+  summary.Sources = true;
+  const std::unique_ptr<Settings> settings = this->TakeSettings(values, { summary });
+  std::vector<Index> rows;
+  if (points)
+  {
+    rows.assign(points->data(), points->data() + points->size());
+  }
+  this->IsComplete = false;
+  this->Runs.resize(1);
+  this->Runs[0] = this->Runs[0] ? std::move(this->Runs[0]) : MakeRun(this->Name);
+  auto& run = dynamic_cast<DistanceRun&>(*this->Runs[0]);
+  DistanceRun::Matrix matrix;
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      const BlockInput input = surface.Describe(run.ExcludesMasked());
+      NamingSettings(
+        *settings, [&] { matrix = run.FindEach(input, *settings, rows, cutoff, monitor); });
+      DistanceRun::RequireSource({ &run });
+    });
+  this->BlockNames = { surface.Block };
+  this->IsComplete = true;
+  return nb::make_tuple(NewArray(std::move(matrix.Data)), NewArray(std::move(matrix.Columns)),
+    NewArray(std::move(matrix.Begin)));
 }
 
 const SurfaceRun& PythonRuns::RunOf(std::size_t surface) const

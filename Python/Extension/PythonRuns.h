@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,10 +43,17 @@ public:
   void Write(std::size_t surface, std::size_t number, const OutputArray& output,
     const InputFields& source) const;
   ///@}
+  /// Of distance: data, indices and indptr of the distances from each of the points, or from all: see
+  /// DistanceRun::FindEach().
+  nanobind::tuple FindEach(const InputFields& surface, const nanobind::dict& settings,
+    const std::optional<LongArray>& points, double cutoff, const nanobind::object& progress);
   /// Of relief: the faces of a surface with a triangle that the relief has turned, ascending.
   std::vector<std::int64_t> TurnedFaces(std::size_t surface, const InputSurface& source) const;
 
 private:
+  /// The settings, checked together with the inputs. Throws InputError and nanobind::value_error.
+  std::unique_ptr<Settings> TakeSettings(
+    const nanobind::dict& values, const std::vector<FieldSummary>& summaries) const;
   std::vector<const SurfaceRun*> ListRuns() const;
   std::vector<Warning> FindWarnings() const;
   /// Throws std::runtime_error unless the last update has succeeded.

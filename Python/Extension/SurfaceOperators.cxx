@@ -58,6 +58,7 @@ SurfaceOperators::SurfaceOperators(std::shared_ptr<const InputSurface> surface,
 {
   SurfaceOptions options;
   options.IntrinsicDelaunay = intrinsicDelaunay;
+  options.Boundaries = BoundaryEdges::Keep; // linear functions have their energy, also beside it
   options.JoinShortEdges = joinShortEdges;
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)

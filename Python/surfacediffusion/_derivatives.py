@@ -133,8 +133,10 @@ def laplacian(surface: SurfaceLike, values: ArrayLike, **others: Any) -> NDArray
     ndarray, shape (n,), or (n, k) of k columns
         In the unit of the values per square of the unit of the coordinates. Inside, -M^-1 K u with
         the matrices of :func:`mass_matrix` and :func:`stiffness_matrix`, without areas that are
-        given for the surface. Its values at single points converge where the points of a mesh look alike, and means over several on any mesh.
-        (m,) with `result_on_faces`.
+        given for the surface; at boundary points that of the quadratic polynomial that fits the data
+        near them, or NaN, with a warning, if their neighbours are too few. Its values at single points
+        inside converge where the points of a mesh look alike, and means over several on any mesh. (m,)
+        with `result_on_faces`.
 
     Examples
     --------

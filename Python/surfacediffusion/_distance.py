@@ -4,29 +4,35 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._functions import _run_once, left_out
+from ._models import ARRAYS
 from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, take_along
-from ._run import Progress, ProgressReporter, warn, warn_of_seams
-from ._settings import check_positive, shorten
-from ._surface import (
-    Surface, SurfaceLike, as_directions, as_flags, as_numbers, as_surface, find_mask, find_place,
-)
+from ._run import Input, Progress, ProgressReporter, Runner, warn
+from ._settings import settings_of, shorten
+from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place
 
 __all__ = ["NearestSources", "distance", "distances", "nearest_sources"]
 
 
-class NearestSources(NamedTuple):
-    """Distances from the nearest of several sources, and which one that is."""
+class _Nearest(NamedTuple):
+    distance: NDArray[np.float64]
+    source: NDArray[np.int64]
+
+
+class NearestSources(_Nearest):
+    """Distances from the nearest of several sources, and which one that is: a pair."""
 
     distance: NDArray[np.float64]  #: (n,), in the unit of the coordinates, or of time
     source: NDArray[np.int64]  #: (n,), the row of `sources`; -1 where the distance is infinite
+    method: str = ""  #: that found them: "Exact", "Eikonal" or "Heat"
+    _name = ""  #: of the distances in VTK
 
 
 def distance(
@@ -39,7 +45,11 @@ def distance(
     along_speed: float = 1.0,
     across_speed: float = 1.0,
     mask: ArrayLike | None = None,
-    method: str = "Eikonal",
+    roi: ArrayLike | None = None,
+    method: str = "Automatic",
+    maximum_distance: float = 0.0,
+    merge_coincident_points: bool = False,
+    merge_tolerance: float = 0.0,
     progress: Progress = None,
     refine_to: float = 0.0,
     maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
@@ -49,25 +59,22 @@ def distance(
     e1, and e2 across them in the tangent plane, grad T . D grad T = 1 with
     D = speed^2 (along_speed^2 e1 e1^T + across_speed^2 e2 e2^T).
 
-    Fast marching on the triangles, which lays out the way from the source in the plane of each
-    triangle: distances in a plane are exact, and those of an icosphere of 10,242 points have a mean
-    error of 0.06 to 0.09 % of the largest one. Without speeds the triangles are those of the intrinsic
-    Delaunay triangulation. The method Heat has smooth level sets and, on the same sphere, an error of
-    0.31 %.
+    Each source counts for itself: the distance is the smallest of those from each alone.
 
     Parameters
     ----------
     surface : Surface or tuple (points, faces)
-        The surface. Fronts go over edges of any number of faces, and not beyond boundaries.
-    sources : int, array_like of shape (k,) or (k, 3), or tuple (faces, barycentric)
-        Points of the surface, by their rows; or coordinates, (k, 3), which stand for the nearest
-        places of the surface; or places in triangles, by the rows of these faces, (k,), and
-        barycentric coordinates, (k, 3).
+        The surface. Ways go over edges of any number of faces, and not beyond boundaries.
+    sources : int, array_like of shape (k,), (n,) or (k, 3), or tuple (faces, barycentric)
+        Points of the surface, by their rows; or bool, True at the points that are sources; or
+        coordinates, (k, 3), which stand for the nearest places of the surface; or places in triangles,
+        by the rows of these faces, (k,), and barycentric coordinates, (k, 3). Those that no face uses,
+        or that are masked or barriers, do not count, with a warning.
     start : array_like, shape (k,), optional
         The times at the sources, by default 0.
     speed : array_like, shape (m,) or (n,), optional
         The speed of fronts on each face, in the unit of the coordinates per unit of time, finite
-        and 0 or more, or at each point: on a face that of its points on average. Faces of speed 0
+        and 0 or more, or at each point: on a triangle that of its corners on average. Faces of speed 0
         are barriers.
     directions : array_like, shape (n, 3) or (m, 3), optional
         Directions e1 at points or on faces, of any length and sign; zero or NaN is none, and fronts
@@ -76,9 +83,21 @@ def distance(
         Factors of the speed along the directions and across them.
     mask : array_like, shape (n,) or (m,), optional
         Nonzero leaves a point with its faces, or a face, out: a barrier, too.
-    method : str
-        "Eikonal", fast marching, or "Heat", the heat method with the step 1.1 h^2, where h is the mean
-        edge length, without `start` and speeds.
+    roi : array_like, shape (n,) or (m,), optional
+        The region of interest, the opposite of a mask and in place of one: zero and NaN are left out.
+    method : {"Automatic", "Exact", "Eikonal", "Heat"}, or in snake_case
+        Automatic: Exact where it takes at most a second, without speeds and start times, and Eikonal
+        otherwise; :func:`nearest_sources` says which. Exact: the lengths of the shortest ways over the
+        faces, to round-off. Eikonal: fast marching, which lays out the way from the source in the plane
+        of each triangle, on the intrinsic Delaunay triangulation or, with speeds, on the faces; where
+        faces are few, their edges are bisected for it. On an icosphere of 10,242 points the mean error
+        is 0.06 to 0.09 % of the largest distance. Heat: the heat method with the step 1.1 h^2, where h
+        is the mean edge length: smooth level sets, an error of 0.31 % on that sphere, and neither
+        `start` nor speeds.
+    maximum_distance : float, 0 or more, default 0
+        Coordinates in `sources` that are farther from the surface do not count. 0: any distance.
+    merge_coincident_points : bool, default False
+        Whether points within `merge_tolerance`, default 0, of each other are one point of the surface.
     progress : bool or callable, optional
         As for :func:`heat`.
     refine_to : float, 0 or more, in coordinates, default 0
@@ -96,11 +115,12 @@ def distance(
     Raises
     ------
     ValueError
-        Without sources, and if one is a point that no face uses or that is masked, or a place on a
-        face that is masked or a barrier; with the method Heat and `start` or speeds.
+        Without any source that counts; with the methods Heat and Exact and `start` or speeds.
 
     References
     ----------
+    J. S. B. Mitchell, D. M. Mount, C. H. Papadimitriou, The discrete geodesic problem, SIAM J. Comput.
+    16(4), 1987, 647-668.
     R. Kimmel, J. A. Sethian, Computing geodesic paths on manifolds, PNAS 95, 1998, 8431-8435.
     M. Novotni, R. Klein, Computing geodesic distances on triangular meshes, WSCG 2002.
     K. Crane, C. Weischedel, M. Wardetzky, Geodesics in heat, ACM Trans. Graph. 32(5), 2013.
@@ -112,23 +132,7 @@ def distance(
     >>> distance(kite, 1).round(3)
     array([3.162, 0.   , 3.162, 6.   ])
     """
-    if method not in ("Eikonal", "Heat"):
-        raise ValueError(f"method is {shorten(method)}; allowed: Eikonal, Heat")
-    speeds = _Speeds(speed, directions, along_speed, across_speed)
-    if method == "Eikonal":
-        return _march(surface, sources, start, speeds, mask, False, progress, refine_to,
-                      maximum_number_of_triangles).distance
-    for name, given in (("start", start), ("speed", speed), ("directions", directions),
-                        ("along_speed", None if along_speed == 1.0 else along_speed),
-                        ("across_speed", None if across_speed == 1.0 else across_speed)):
-        if given is not None:
-            raise ValueError(f"method is Heat; allowed: Eikonal together with {name}")
-    surface, fronts, given = _prepare(
-        surface, sources, speeds, mask, refine_to, maximum_number_of_triangles)
-    with surface._lock, ProgressReporter(progress) as reporter:
-        found: NDArray[np.float64] = fronts.by_heat(*given, reporter.callable)
-        reporter.finish_part()
-    return found
+    return nearest_sources(**locals()).distance
 
 
 def nearest_sources(
@@ -141,24 +145,28 @@ def nearest_sources(
     along_speed: float = 1.0,
     across_speed: float = 1.0,
     mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
+    method: str = "Automatic",
+    maximum_distance: float = 0.0,
+    merge_coincident_points: bool = False,
+    merge_tolerance: float = 0.0,
     progress: Progress = None,
     refine_to: float = 0.0,
     maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
 ) -> NearestSources:
-    """The distance from the nearest source, and the row of this source. Fronts of the sources do not
-    mix: the distance is the smallest of those by :func:`distance` from each source alone. From all
-    sources together, as along a line of points, that function has plane fronts.
+    """The distance from the nearest source, and the row of this source.
 
     Parameters
     ----------
-    surface, sources, start, speed, directions, along_speed, across_speed, mask, progress, refine_to, \
-maximum_number_of_triangles
-        As for :func:`distance`.
+    surface, sources, start, speed, directions, along_speed, across_speed, mask, roi, method, \
+maximum_distance, merge_coincident_points, merge_tolerance, progress, refine_to, maximum_number_of_triangles
+        As for :func:`distance`. With the method Heat, the sources are those of Automatic.
 
     Returns
     -------
     NearestSources
-        `distance` (n,) and `source` (n,); of equally near sources, the first one.
+        `distance` (n,) and `source` (n,), a pair, and `method`, the one that found them. Of equally near
+        sources, the first one. Of a bool array of sources, `source` is the point.
 
     Examples
     --------
@@ -168,34 +176,29 @@ maximum_number_of_triangles
     >>> nearest_sources(strip, [0, 5]).source
     array([0, 0, 1, 0, 1, 1])
     """
-    return _march(surface, sources, start, _Speeds(speed, directions, along_speed, across_speed), mask,
-                  True, progress, refine_to, maximum_number_of_triangles)
-
-
-class _Speeds(NamedTuple):
-    """The arguments of speeds as they are given."""
-
-    speed: Any = None
-    directions: Any = None
-    along: Any = 1.0
-    across: Any = 1.0
-
-
-def _march(
-    surface: SurfaceLike, sources: Any, start: Any, speeds: _Speeds, mask: Any, apart: bool,
-    progress: Progress, refine_to: float, limit: int
-) -> NearestSources:
-    _, fronts, (rows, barycentric) = _prepare(surface, sources, speeds, mask, refine_to, limit)
-    times = np.zeros(len(rows)) if start is None else np.asarray(
-        as_numbers("start", start), dtype=np.float64).reshape(-1)
-    if times.shape != rows.shape or not np.isfinite(times).all():
-        raise ValueError(f"start is {shorten(start)}; allowed: {len(rows)} finite numbers, one per "
-                         "source")
-    with ProgressReporter(progress) as reporter:
-        found, source = fronts.from_all(
-            rows, barycentric, np.ascontiguousarray(times), apart, reporter.callable)
-        reporter.finish_part()
-    return NearestSources(found, source.astype(np.int64))
+    given = as_surface(surface)
+    marked, rows, places = _as_sources(given, sources)
+    surface, carried, _ = take_along(given, "distance", refine_to, maximum_number_of_triangles, {
+        "mask": mask, "roi": roi, "speed": speed, "directions": directions})
+    if surface is not given and rows is not None and places is not None:  # other triangles, the same planes
+        rows, places = None, np.einsum("ki,kij->kj", places, given.points[given.triangles[rows]])
+    inputs = _make_input(surface, **carried)
+    times = _as_times(start, len(rows if places is None else places))
+    inputs.core.set_sources(places, None, None, rows, times)
+    runner = Runner("distance", {
+        "method": method, "along_speed": along_speed, "across_speed": across_speed,
+        "maximum_distance": maximum_distance, "merge_coincident_points": merge_coincident_points,
+        "merge_tolerance": merge_tolerance}, _ARRAYS)
+    outputs, _ = _run_once("distance", inputs, runner, progress)
+    found = {output.name: output.values for output in outputs}
+    source = found["NearestSource"].astype(np.int64)
+    if marked:
+        source = np.where(source < 0, -1, rows[source])
+    name = "ArrivalTime" if "ArrivalTime" in found else "Distance"
+    nearest = NearestSources(found[name], source)
+    nearest._name = name
+    nearest.method = settings_of("distance")["method"].words[int(found["EffectiveMethod"])]
+    return nearest
 
 
 def distances(
@@ -208,27 +211,37 @@ def distances(
     along_speed: float = 1.0,
     across_speed: float = 1.0,
     mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
+    method: str = "Automatic",
+    merge_coincident_points: bool = False,
+    merge_tolerance: float = 0.0,
     progress: Progress = None,
 ) -> Any:
-    """The distances from each of several points to all points that are no farther than `cutoff`, by
-    the method of :func:`distance`. The memory is that of the result.
+    """The distances from each of several points to all points that are no farther than `cutoff`. The
+    memory is that of the result.
+
+    The matrix from all points to all points is symmetric to round-off with the method Exact. With Eikonal
+    it is not: a way and the way back have different errors.
 
     Parameters
     ----------
     surface : Surface or tuple (points, faces)
         The surface.
-    sources : array_like of int, shape (k,), optional
-        Points of the surface, by their rows; by default all points that faces use.
+    sources : array_like of int, shape (k,), or of bool, shape (n,), optional
+        Points of the surface, by their rows, or True at them; by default all points.
     cutoff : float, above 0
         In the unit of the coordinates, or of time.
-    speed, directions, along_speed, across_speed, mask, progress
+    method : {"Automatic", "Exact", "Eikonal"}, or in snake_case
+        As for :func:`distance`. Automatic: Exact where all rows together take at most a second.
+    speed, directions, along_speed, across_speed, mask, roi, merge_coincident_points, merge_tolerance, \
+progress
         As for :func:`distance`.
 
     Returns
     -------
     scipy.sparse.csr_array, shape (k, n)
         One row per source. Entries that are not stored are farther than `cutoff`, or not reached;
-        the distance 0 of the source from itself is stored.
+        the distance 0 of the source from itself is stored. Rows of points that no face uses are empty.
 
     Raises
     ------
@@ -247,61 +260,63 @@ def distances(
     if isinstance(cutoff, bool) or not isinstance(
             cutoff, (int, float, np.number)) or not cutoff > 0.0:
         raise ValueError(f"cutoff is {shorten(cutoff)}; allowed: numbers above 0")
-    if sources is None:
-        marked = as_flags("mask", mask)
-        faces = surface.triangles
-        if marked is not None and len(marked) == surface.n_points:
-            faces = faces[(marked[faces] == 0).all(axis=1)]
-        sources = np.unique(faces)
-    rows = _as_rows(surface, sources)
-    fronts = _make_fronts(surface, _Speeds(speed, directions, along_speed, across_speed), mask)
-    _require_points(fronts, rows)
-    with ProgressReporter(progress) as reporter:
-        entries = fronts.from_each(rows, float(cutoff), reporter.callable)
+    rows: Any = None
+    if sources is not None:
+        _, rows, places = _as_sources(surface, sources)
+        if places is not None:
+            raise ValueError(f"sources is {shorten(sources)}; allowed: rows of points, or flags")
+    inputs = _make_input(surface, mask=mask, roi=roi, speed=speed, directions=directions)
+    runner = Runner("distance", {
+        "method": method, "along_speed": along_speed, "across_speed": across_speed,
+        "merge_coincident_points": merge_coincident_points, "merge_tolerance": merge_tolerance}, _ARRAYS)
+    with surface._lock, ProgressReporter(progress) as reporter:
+        run = surface._runs.setdefault("distance", _core.SurfaceRuns("distance"))
+        entries = runner.call(run.find_each, inputs.core, runner.settings, rows, float(cutoff),
+                              reporter.callable)
+        sentences = runner.warnings(run)
         reporter.finish_part()
-    return sparse.csr_array(entries, shape=(len(rows), surface.n_points))
+    warn(sentences)
+    return sparse.csr_array(entries, shape=(len(entries[2]) - 1, surface.n_points))
 
 
-def _prepare(
-    surface: SurfaceLike, sources: Any, speeds: _Speeds, mask: Any, refine_to: float, limit: int
-) -> tuple[Surface, Any, tuple[NDArray[np.int64], NDArray[np.float64] | None]]:
-    """The surface, refined if that is asked for, the fronts on it, and the sources: rows of points, or of
-    triangles with barycentric coordinates."""
-    given = as_surface(surface)
-    rows: NDArray[np.int64] | None = None
-    barycentric: NDArray[np.float64] | None = None
-    places: NDArray[np.float64] | None = None
+#: The keywords of input arrays, by their names in messages.
+_ARRAYS = {**ARRAYS, "SourceArray": "sources", "SourceTimes": "start", "SpeedArray": "speed"}
+
+
+def _make_input(surface: Surface, *, mask: Any, roi: Any, speed: Any, directions: Any) -> Input:
+    inputs = Input(surface, mask=left_out(mask, roi, surface), directions=directions)
+    if speed is not None:
+        on_faces = find_place("speed", speed, (surface.n_points, surface.n_faces), "number", False)
+        inputs.core.set_speeds(as_factors("speed", speed), on_faces)
+    return inputs
+
+
+def _as_times(start: Any, count: int) -> NDArray[np.float64] | None:
+    if start is None:
+        return None
+    times = np.ascontiguousarray(as_numbers("start", start), dtype=np.float64).reshape(-1)
+    if times.shape != (count,) or not np.isfinite(times).all():
+        raise ValueError(f"start is {shorten(start)}; allowed: {count} finite numbers, one per source")
+    return times
+
+
+def _as_sources(surface: Surface, sources: Any) -> tuple[bool, Any, Any]:
+    """Whether the sources are flags; rows of points, or of triangles with barycentric coordinates; or
+    none, with coordinates."""
     if isinstance(sources, tuple) and len(sources) == 2 and _count_axes(sources[1]) == 2:
-        rows, barycentric = _as_places_in_triangles(given, *sources)
-    elif _count_axes(sources) == 2:
+        return (False, *_as_places_in_triangles(surface, *sources))
+    if _count_axes(sources) == 2:
         places = np.ascontiguousarray(as_numbers("sources", sources), dtype=np.float64)
         if places.shape[1] != 3 or len(places) == 0 or not np.isfinite(places).all():
             raise ValueError(f"sources is {shorten(sources)}; allowed: finite coordinates, (k, 3)")
-    else:
-        rows = _as_rows(given, sources)
-    surface, carried, _ = take_along(given, "distance", refine_to, limit, {
-        "mask": mask, "speed": speeds.speed, "directions": speeds.directions})
-    fronts = _make_fronts(surface, speeds._replace(speed=carried["speed"],
-                                                   directions=carried["directions"]), carried["mask"])
-    if barycentric is not None and surface is not given:  # other triangles, in the same planes
-        places = np.einsum("ki,kij->kj", barycentric, given.points[given.triangles[rows]])
-    if places is not None:
-        rows, flat, farness = fronts.project(places, None)
-        if farness:
-            warn([farness])
-        barycentric = flat.reshape(-1, 3)
-        if (rows < 0).any():
-            raise ValueError(f"sources has {places[rows < 0][0].tolist()}, which is nearest to a face "
-                             "that is masked or a barrier; allowed: places near others")
-    assert rows is not None
-    if barycentric is None:
-        _require_points(fronts, rows)
-    else:
-        for k, row in enumerate(rows):
-            if not fronts.has_triangle(int(row)):
-                raise ValueError(f"sources has in row {k} a face that is masked, or a barrier, or has no "
-                                 "area; allowed: other faces")
-    return surface, fronts, (rows, barycentric)
+        return False, None, places
+    marks = np.asarray(sources) if _count_axes(sources) == 1 else None
+    if marks is not None and marks.dtype == bool:
+        if marks.shape != (surface.n_points,) or not marks.any():
+            raise ValueError(f"sources is {shorten(sources)}; allowed: {surface.n_points} flags, one per "
+                             "point, at least one of them True")
+        return True, np.flatnonzero(marks), None
+    return False, _as_rows(surface, sources), None
 
 
 def _count_axes(values: Any) -> int:
@@ -315,7 +330,8 @@ def _as_rows(surface: Surface, sources: Any) -> NDArray[np.int64]:
     rows = np.atleast_1d(as_numbers("sources", sources))
     if rows.ndim != 1 or rows.size == 0 or rows.dtype.kind not in "iu":
         raise ValueError(f"sources is {shorten(sources)}; allowed: rows of points, one or more "
-                         "integers; coordinates, (k, 3); or faces with barycentric coordinates")
+                         "integers; flags, one per point; coordinates, (k, 3); or faces with barycentric "
+                         "coordinates")
     outside = (rows < 0) | (rows >= surface.n_points)
     if outside.any():
         raise ValueError(f"sources has {rows[outside][0]}; allowed: 0 to {surface.n_points - 1}, the "
@@ -350,54 +366,3 @@ def _as_places_in_triangles(
                          "allowed: triangles, or coordinates in place of faces")
     first = np.concatenate([[0], np.cumsum(sizes - 2)])
     return np.ascontiguousarray(first[rows], dtype=np.int64), weights
-
-
-def _make_fronts(surface: Surface, speeds: _Speeds, mask: Any) -> Any:
-    """The fronts on a surface, and the factors of the heat method, which it keeps for other sources."""
-    sizes = (surface.n_points, surface.n_faces)
-    flags, on_faces = find_mask(mask, sizes)
-    for name, factor in (("along_speed", speeds.along), ("across_speed", speeds.across)):
-        check_positive(name, factor)
-    directions, directions_on_faces = None, False
-    if speeds.directions is not None:
-        directions, directions_on_faces = as_directions("directions", speeds.directions, sizes)
-    elif speeds.along != speeds.across:
-        raise ValueError(f"along_speed is {speeds.along} and across_speed is {speeds.across} but "
-                         "directions is not set; allowed: equal values, or directions")
-    slowness = _as_slowness(surface, speeds.speed)
-    contents = hashlib.blake2b(repr((speeds.along, speeds.across, directions_on_faces)).encode())
-    for array in (flags, slowness, directions):
-        contents.update(b"-" if array is None else repr(array.shape).encode() + array.tobytes())
-    with surface._lock:
-        version, fronts = surface._runs.get("distance", (b"", None))
-        if version != contents.digest():
-            fronts = _core.Distances(surface._core, flags, on_faces, slowness, directions,
-                                     directions_on_faces, float(speeds.along), float(speeds.across), None)
-            surface._runs["distance"] = contents.digest(), fronts
-    warn_of_seams(fronts, "no way leads from one to the other")
-    return fronts
-
-
-def _require_points(fronts: Any, rows: NDArray[np.int64]) -> None:
-    for row in rows:
-        if not fronts.has_point(int(row)):
-            raise ValueError(f"sources has point {row}, which no face uses that is not masked and "
-                             "has an area; allowed: points of the surface")
-
-
-def _as_slowness(surface: Surface, speed: Any) -> NDArray[np.float64] | None:
-    """1 / speed of each face; None stays."""
-    if speed is None:
-        return None
-    array = np.asarray(as_numbers("speed", speed), dtype=np.float64)
-    on_faces = find_place("speed", speed, (surface.n_points, surface.n_faces), "number", False)
-    bad = ~(np.isfinite(array) & (array >= 0.0))
-    if bad.any():
-        row = int(np.argmax(bad))
-        raise ValueError(f"speed is {array[row]} in row {row}; allowed: finite numbers, 0 or more")
-    if not on_faces:
-        sums = np.add.reduceat(array[surface._connectivity], surface._offsets[:-1])
-        array = sums / np.diff(surface._offsets)
-    with np.errstate(divide="ignore"):
-        slowness: NDArray[np.float64] = 1.0 / array
-    return slowness

@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._functions import heat
-from ._run import find_result_type
+from ._run import find_result_type, warn
 from ._settings import shorten
 from ._surface import Surface, SurfaceLike, as_data, as_flags, as_outside, as_surface, data_components
 
 #: exp(-d^2 / (4 sigma^2)) = exp(-d^2 * _RATE / FWHM^2), since FWHM^2 = 8 ln 2 sigma^2.
 _RATE = 2.0 * np.log(2.0)
+
+#: The square of the FWHM that takes half of the variance with the mean, over the area: 4 pi sigma^2 is
+#: half of the area.
+_HALF = np.log(2.0) / np.pi
 
 #: Edges with equal shares of the weight have one length in the solve.
 _BINS = 256
@@ -60,7 +64,9 @@ def estimate_fwhm(
     -------
     FWHMEstimate
         `pooled` and `columns`, in the unit of the coordinates. 0 for maps without correlation
-        between neighbours, inf for constant maps.
+        between neighbours, inf for constant maps, and for those that are as smooth as the surface is
+        large, with a warning: the equation below has no solution, which is at most half the root of
+        the area.
 
     Notes
     -----
@@ -97,6 +103,19 @@ def estimate_fwhm(
     >>> bool(abs(estimate.pooled / 20 - 1) < 0.03), estimate.columns.shape
     (True, (10,))
     """
+    estimate, widest = _estimate(surface, residuals, mask, roi, demean)
+    wide = [str(k) for k in np.flatnonzero(np.isinf(estimate.columns) & (widest > 0))]
+    if wide:
+        warn([f"residuals is as smooth as the surface is large in column{'s' if len(wide) > 1 else ''} "
+              f"{', '.join(wide)}: its width is above {widest[int(wide[0])]:.4g}, and inf (take a larger "
+              "surface, or maps of less smooth noise)"])
+    return estimate
+
+
+def _estimate(
+    surface: SurfaceLike, residuals: ArrayLike, mask: Any, roi: Any, demean: bool
+) -> tuple[FWHMEstimate, NDArray[np.float64]]:
+    """The estimate, and for each column the largest width that it may have; 0 if it is constant."""
     surface = as_surface(surface)
     maps = as_data("residuals", residuals, surface.n_points)
     masked = as_flags("mask", _as_mask(mask, roi, surface), surface.n_points)
@@ -134,11 +153,12 @@ def estimate_fwhm(
         areas[:] = np.inf
     columns = np.array([_solve(p, v, edges.squares, a) for p, v, a in zip(products, variances, areas)])
     varying = variances.sum(axis=1) > 0  # constant columns say nothing of the others
+    widest = np.where(varying, np.sqrt(_HALF * areas), 0.0)
     if not varying.any():
-        return FWHMEstimate(float("inf"), columns)
+        return FWHMEstimate(float("inf"), columns), widest
     pooled = _solve(products[varying].mean(), variances[varying].mean(axis=0), edges.squares,
                     areas[varying].mean())
-    return FWHMEstimate(pooled, columns)
+    return FWHMEstimate(pooled, columns), widest
 
 
 def _as_mask(mask: Any, roi: Any, surface: Surface) -> Any:
@@ -195,13 +215,28 @@ def _solve(
         return float("inf")
     if product <= 0.0:
         return 0.0
-    fwhm = 0.0
-    for _ in range(50):  # the part that the mean takes depends on the width
-        taken = min(0.5, np.pi / (2.0 * np.log(2.0)) * fwhm**2 / area)
-        before, fwhm = fwhm, _invert(product + taken * (1.0 - product), variances, squares)
-        if abs(fwhm - before) <= 1e-9 * fwhm:
-            break
-    return fwhm
+    if not np.isfinite(area):
+        return _invert(product, variances, squares)
+
+    def excess(widths: NDArray[np.float64]) -> NDArray[np.float64]:
+        expected = np.exp(-_RATE * squares / widths[:, None] ** 2) @ variances
+        taken = 0.5 * widths**2 / (_HALF * area)  # the part of the variance that goes with the mean
+        rising: NDArray[np.float64] = (expected - taken) / (1.0 - taken) - product
+        return rising
+
+    # It rises with the width until the mean takes half of the variance, or less on coarse surfaces.
+    widths = np.sqrt(_HALF * area) * np.geomspace(1e-6, 1.0, 512)
+    above = np.flatnonzero(excess(widths) > 0.0)
+    if above.size == 0:
+        return float("inf")
+    low, high = float(widths[above[0] - 1]) if above[0] else 0.0, float(widths[above[0]])
+    while low < 0.5 * (low + high) < high:
+        middle = 0.5 * (low + high)
+        if excess(np.array([middle]))[0] > 0.0:
+            high = middle
+        else:
+            low = middle
+    return high
 
 
 def _invert(
@@ -298,7 +333,7 @@ def smooth_to_fwhm(
         noise = np.asarray(as_data("residuals", residuals, surface.n_points), dtype=np.float64)
 
     def measure(maps: NDArray[Any]) -> float:
-        return estimate_fwhm(surface, maps, mask=mask, demean=demean).pooled
+        return _estimate(surface, maps, mask, None, demean)[0].pooled
 
     def smooth(maps: Any, width: float, **keywords: Any) -> NDArray[Any]:
         # The time of heat's own `fwhm`, whose warnings would name a width that no caller has given.
@@ -307,6 +342,7 @@ def smooth_to_fwhm(
                                     time_integrator="Exponential", number_of_time_steps=1, **keywords)
         return result
 
+    area = float(_Edges(surface).areas.sum())
     found = measure(noise)
     if not found < fwhm:
         raise ValueError(f"fwhm is {fwhm:g}, but the noise has a smoothness of {found:.4g} already; "
@@ -315,16 +351,22 @@ def smooth_to_fwhm(
     width = np.sqrt(fwhm**2 - found**2)
     before = (0.0, found**2)
     largest = found**2
-    for _ in range(12):
+    low, high = 0.0, np.inf  # squares of widths that reach less and more
+    for _ in range(40):
         reached = measure(smooth(noise, width)) ** 2
-        if not np.isfinite(reached) or width**2 == before[0]:
-            break  # on a surface that is smaller than the kernel
-        largest = max(largest, reached)
         if abs(np.sqrt(reached) / fwhm - 1.0) <= tolerance:
             return smooth(values, width, dtype=dtype)
-        slope = (reached - before[1]) / (width**2 - before[0])
-        before = (width**2, reached)
-        step = (fwhm**2 - reached) / slope if slope > 0.1 else fwhm**2 - reached
-        width = np.sqrt(min(max(width**2 + step, 0.01 * width**2), 100.0 * width**2))
+        low, high = (low, width**2) if reached > fwhm**2 else (width**2, high)
+        step = fwhm**2 - reached
+        if np.isfinite(reached):  # else the surface is smaller than the kernel
+            largest = max(largest, reached)
+            slope = (reached - before[1]) / (width**2 - before[0])
+            step = step / slope if slope > 0.1 else step
+            before = (width**2, reached)
+        square = min(max(width**2 + step, 0.01 * width**2), 100.0 * width**2)
+        square = square if low < square < high else 0.5 * (low + high)
+        if not (low < square < high) or high - low < 1e-9 * low or square > 4.0 * _HALF * area:
+            break
+        width = np.sqrt(square)
     raise ValueError(f"fwhm is {fwhm:g}, but smoothing reaches {np.sqrt(largest):.4g}; allowed: "
                      "widths of several edges that are small against the surface")

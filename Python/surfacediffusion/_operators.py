@@ -85,7 +85,8 @@ def stiffness_matrix(
         whose part in the plane of the triangle counts. By default 1.
     intrinsic_delaunay : bool, default False
         Whether K is that of the intrinsic Delaunay triangulation, whose entries off the diagonal
-        are 0 or less. Not with `diffusivity`.
+        are 0 or less, except at edges of the boundary, which are kept, opposite an obtuse angle. Not
+        with `diffusivity`.
 
     Returns
     -------

@@ -387,7 +387,8 @@ class InterpolationResult(ModelResult):
     error : ndarray
         With ``compute_error=True`` the standard error of each of the values. No row otherwise.
     smoothing : ndarray, shape (k,)
-        mu of each component, found or given, in the unit of `smoothing`; 0 if the values hold.
+        mu of each component, found or given, in the unit of `smoothing`; 0 if the values hold. Of
+        several connected parts, each of which has its own, that of the part with the most values.
     score : ndarray, shape (k,)
         Of generalised cross-validation.
     misfit : ndarray, shape (k,)
@@ -395,7 +396,8 @@ class InterpolationResult(ModelResult):
     degrees_of_freedom : ndarray, shape (k,)
         The trace of the matrix that takes the given values to the fitted ones.
     noise_level : ndarray, shape (k,)
-        The standard deviation of values with weight 1, given or estimated.
+        The standard deviation of values with weight 1, given or estimated; of several connected parts
+        the root of its mean square.
     number_of_values : int
         The values that were used.
     number_of_far_values : int

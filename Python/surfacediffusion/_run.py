@@ -205,11 +205,34 @@ _FOUND = {
 }
 
 
+#: Settings in place of which another one acts, unless this is 0 or off, without a warning.
+_REPLACED = {
+    "heat": {"time_step": ("fwhm", "mode"), "fidelity_weight": ("automatic_fidelity",)},
+    "intrinsic_tv": {"time_step": ("mode",), "fidelity_weight": ("automatic_fidelity",)},
+    "turing_texture": {"time_step": ("automatic_time_step",)},
+    "segment": {"means": ("automatic_means",)},
+    "interpolate": {"smoothing": ("automatic_smoothing",)},
+}
+
+
+def _refuse_replaced(function: str, properties: Mapping[str, Any]) -> None:
+    """ValueError if a given keyword would be dropped because of another given one."""
+    for name, others in _REPLACED.get(function, {}).items():
+        for other in others:
+            value = properties.get(other)
+            acts = (value in ("SteadyState", "steady_state") if isinstance(value, str) else
+                    isinstance(value, (bool, int, float, np.bool_, np.number)) and bool(value))
+            if name in properties and acts:
+                raise ValueError(f"{name} is {shorten(properties[name])}, but {other} is "
+                                 f"{shorten(properties[other])}, which takes its place; allowed: one of them")
+
+
 class Runner:
     """Runs of a model with given settings, and the wording of their errors."""
 
     def __init__(self, function: str, properties: Mapping[str, Any], arrays: Mapping[str, str]):
         self.function, self.arrays = function, arrays
+        _refuse_replaced(function, properties)
         off = {switch: False for name, switch in _FOUND.get(function, {}).items() if name in properties}
         self.settings = convert_all(function, {**off, **properties})
         if function == "heat" and not (

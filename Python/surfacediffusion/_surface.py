@@ -336,8 +336,8 @@ class Surface:
     @property
     def vertex_areas(self) -> NDArray[np.float64]:
         """The areas (n,) of the control cells of the points: the diagonal of the lumped mass matrix.
-        A third of the triangles at each point, or as given by `areas`. With
-        ``intrinsic_delaunay=True`` functions use those of other triangles."""
+        A third of the triangles at each point, or as given by `areas`, also for functions with
+        ``intrinsic_delaunay=True``."""
         return self._triangle_areas() if self._areas is None else self._areas.copy()
 
     def __repr__(self) -> str:

@@ -58,7 +58,6 @@ import pyvista
 from numpy.typing import NDArray
 
 from . import _core, _functions
-from ._distance import distance as _distance
 from ._distance import nearest_sources as _nearest_sources
 from ._fields import random_field as _random_field
 from ._fields import surrogates as _surrogates
@@ -328,7 +327,8 @@ def curvature(
 def distance(
     mesh: Any, sources: Any, *, speed: str | None = None, direction: str | None = None,
     along_speed: float = 1.0, across_speed: float = 1.0, mask: str | None = None, roi: str | None = None,
-    method: str = "Eikonal", progress: Progress = False, result_array_name: str | None = None,
+    method: str = "Automatic", progress: Progress = False, result_array_name: str | None = None,
+    **properties: Any,
 ) -> Any:
     """Compute the distance along the mesh from the nearest source, or with speeds the time at which
     fronts arrive.
@@ -337,10 +337,11 @@ def distance(
     data set or an array (k, 3), whose points stand for the nearest places of the mesh, in each block of a
     MultiBlock. speed: point or cell array. direction: point or cell array with three components, for
     along_speed and across_speed. mask, roi: point or cell array; points and cells with a nonzero value,
-    or with 0, are left out. The method is that of surfacediffusion.distance. The results are the point
-    arrays Distance, with speeds ArrivalTime, which becomes active, and NearestSource: the value of the
+    or with 0, are left out. All other keywords are those of surfacediffusion.distance. The results are the
+    point arrays Distance, with speeds ArrivalTime, which becomes active, and NearestSource: the value of the
     array at the nearest source, or the number of the point. Points that no way reaches have inf, and 0 or
-    -1. result_array_name is the prefix of the names.
+    -1. The field array EffectiveMethod says which method was taken. result_array_name is the prefix of the
+    names.
     """
     blocks = _find_surfaces(mesh, "distance", {})
     given = getattr(sources, "points", sources)
@@ -358,14 +359,17 @@ def distance(
                                  "arrays that are nonzero at the sources")
             names, nowhere = marks[rows], 0
         else:
-            names, nowhere = np.atleast_1d(given) if np.ndim(given) < 2 else np.arange(len(given)), -1
-        times = _distance(block.surface, rows, method=method, progress=progress, **arrays)
-        nearest = _nearest_sources(block.surface, rows, **arrays).source
+            numbers = np.arange(len(given) if np.ndim(given) else 1)
+            is_rows = np.ndim(given) < 2 and np.asarray(given).dtype != bool
+            names, nowhere = np.atleast_1d(given) if is_rows else numbers, -1
+        found = _nearest_sources(
+            block.surface, rows, method=method, progress=progress, **arrays, **properties)
         prefix = result_array_name or ""
-        has_speed = speed is not None or along_speed != 1.0 or across_speed != 1.0
-        name = prefix + ("ArrivalTime" if has_speed else "Distance")
-        block.add(name, times, False)
-        block.add(prefix + "NearestSource", np.where(nearest < 0, nowhere, names[nearest]), False)
+        name = prefix + found._name
+        block.add(name, found.distance, False)
+        block.add(prefix + "NearestSource",
+                  np.where(found.source < 0, nowhere, names[found.source]), False)
+        block.mesh.field_data[prefix + "EffectiveMethod"] = [found.method]
         block.mesh.set_active_scalars(name, "point")
     return _rebuild(mesh, iter(blocks))
 

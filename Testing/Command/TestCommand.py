@@ -424,7 +424,8 @@ class OtherCommands(CommandTest):
         self.succeed("distance lh.surf.gii a.npy --from 0.1,0,10.1")
         code, _, error = run("distance", "lh.surf.gii", "a.npy", "--from", "100,0,10100")
         self.assertEqual(code, 0)
-        self.assertRegex(error, r"warning: --from 100,0,10100 is 1.009e\+04 from the surface, which is 34")
+        self.assertRegex(error, r"warning: half of the points of the sources are 10090\S* or more from the surface, "
+                                r"which is 34")
 
     def test_directions_are_unit_vectors_in_the_faces(self):
         self.succeed("directions lh.surf.gii out.npy --method Smooth")

@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""500 damaged files of all formats are read, or refused in one line: no crash, no hang, no traceback, and
+"""700 damaged files of all formats are read, or refused in one line: no crash, no hang, no traceback, and
 no memory beyond that of a small file. The damage is the same in every run."""
 
 import faulthandler
 import gzip
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -19,7 +20,7 @@ import samples
 from nibabel.gifti.util import gifti_encoding_codes
 from samples import HAS_VTK, N, NOISE, SMOOTH, run
 
-MUTANTS = 500
+MUTANTS = 700
 SECONDS_EACH = 15
 MEMORY = 4 << 30
 
@@ -58,7 +59,41 @@ def write_good_files(folder):
     if HAS_VTK:
         samples.write_vtk(path("a.vtk"))
         samples.write_vtk(path("a.vtp"))
+        write_other_vtk(path)
     return sorted(folder.iterdir())
+
+
+def write_other_vtk(path):
+    """Text, grids, and the ways to store arrays in XML."""
+    from vtkmodules import vtkIOLegacy, vtkIOXML
+    from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+
+    from surfacediffusion.files import read_surface
+
+    mesh, grid = read_surface(path("a.vtp")).image, vtkUnstructuredGrid()
+    grid.SetPoints(mesh.GetPoints())
+    grid.SetCells(5, mesh.GetPolys())
+    grid.GetPointData().ShallowCopy(mesh.GetPointData())
+    for name, data, version in (("text.vtk", mesh, 42), ("text5.vtk", mesh, 51), ("grid.vtk", grid, 42),
+                                ("grid5.vtk", grid, 51)):
+        writer = (vtkIOLegacy.vtkPolyDataWriter if data is mesh else vtkIOLegacy.vtkUnstructuredGridWriter)()
+        writer.SetFileVersion(version)
+        if name.startswith("grid"):
+            writer.SetFileTypeToBinary()
+        writer.SetInputData(data)
+        writer.SetFileName(str(path(name)))
+        writer.Write()
+    for name, data, mode, compressed in (("text.vtp", mesh, "Ascii", False), ("raw.vtp", mesh, "Appended", False),
+                                         ("plain.vtp", mesh, "Binary", False), ("text.vtu", grid, "Ascii", False),
+                                         ("raw.vtu", grid, "Appended", True)):
+        writer = (vtkIOXML.vtkXMLPolyDataWriter if data is mesh else vtkIOXML.vtkXMLUnstructuredGridWriter)()
+        writer.SetInputData(data)
+        writer.SetFileName(str(path(name)))
+        getattr(writer, f"SetDataModeTo{mode}")()
+        writer.EncodeAppendedDataOff()
+        if not compressed:
+            writer.SetCompressorTypeToNone()
+        writer.Write()
 
 
 def span(data, longest):
@@ -108,9 +143,19 @@ def digits(data):
     return data[:start] + words[int(RNG.integers(len(words)))] + data[start + 1:]
 
 
+def numbers(data):
+    """Other whole numbers in texts, such as counts and dimensions."""
+    places = [found.span() for found in re.finditer(rb"(?<![\d.])\d+(?![\d.])", data[:3000])]
+    if not places:
+        return extreme(data)
+    start, stop = places[int(RNG.integers(len(places)))]
+    words = [b"-1", b"0", b"2", b"1000", b"1000000000", b"1073741824", b"99999999999", b"1000000000000"]
+    return data[:start] + words[int(RNG.integers(len(words)))] + data[stop:]
+
+
 def write_mutants(folder):
     good = write_good_files(folder)
-    kinds = [cut, flip, remove, repeat, extreme, digits]
+    kinds = [cut, flip, remove, repeat, extreme, digits, numbers, numbers]
     for i in range(MUTANTS):
         path = good[i % len(good)]
         data = path.read_bytes()

@@ -39,7 +39,7 @@ Machine: {processor}, {cores} cores.
 
 | name | call |
 | --- | --- |
-| SurfaceDiffusion, fronts | `distance()`, fast marching with the places that fronts come from |
+| SurfaceDiffusion, fronts | `distance(method="Eikonal")`, fast marching with the places that fronts come from |
 | SurfaceDiffusion, heat | `distance(method="Heat")` |
 | potpourri3d, heat | `MeshHeatMethodDistanceSolver`, the robust Laplacian |
 | potpourri3d, fronts | `MeshFastMarchingDistanceSolver` |
@@ -93,7 +93,7 @@ class Peers:
 
     def _SurfaceDiffusion_fronts(self):
         surface = sd.Surface(self.points, self.faces)
-        return lambda source: sd.distance(surface, source)
+        return lambda source: sd.distance(surface, source, method="Eikonal")
 
     def _SurfaceDiffusion_heat(self):
         surface = sd.Surface(self.points, self.faces)

@@ -135,7 +135,206 @@ Surface Cap(int level, double radius)
   return s;
 }
 
+/// The hull of a few points on the unit sphere, at random: the triangles with all others on one side.
+Surface Hull(Index points, std::int64_t seed)
+{
+  Surface s{ Points(points, 3), Triangles() };
+  for (Index i = 0; i < points; ++i)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      s.Vertices(i, c) = Normal(seed, c, i);
+    }
+    s.Vertices.row(i).normalize();
+  }
+  std::vector<Eigen::RowVector3d> vertices;
+  std::vector<std::array<Index, 3>> faces;
+  for (Index i = 0; i < points; ++i)
+  {
+    vertices.emplace_back(s.Vertices.row(i));
+    for (Index j = 0; j < points; ++j)
+    {
+      for (Index k = 0; k < points; ++k)
+      {
+        const Eigen::RowVector3d a = s.Vertices.row(i);
+        const Eigen::RowVector3d normal = (s.Vertices.row(j) - a).cross(s.Vertices.row(k) - a);
+        if (i < j && i < k && j != k &&
+          ((s.Vertices.rowwise() - a) * normal.transpose()).maxCoeff() < 1e-12)
+        {
+          faces.push_back({ i, j, k });
+        }
+      }
+    }
+  }
+  return MakeSurface(vertices, faces);
+}
+
+/// An L with arms of these lengths and widths, and a height.
+Surface LPrism(double a, double b, double widthOfA, double widthOfB, double height)
+{
+  const double outline[6][2] = { { 0.0, 0.0 }, { a, 0.0 }, { a, widthOfA }, { widthOfB, widthOfA },
+    { widthOfB, b }, { 0.0, b } };
+  std::vector<Eigen::RowVector3d> vertices;
+  std::vector<std::array<Index, 3>> faces;
+  for (const double z : { 0.0, height })
+  {
+    for (const auto& p : outline)
+    {
+      vertices.emplace_back(p[0], p[1], z);
+    }
+  }
+  for (Index i = 1; i < 5; ++i)
+  {
+    faces.push_back({ 0, i + 1, i });
+    faces.push_back({ 6, i + 6, i + 7 });
+  }
+  for (Index i = 0; i < 6; ++i)
+  {
+    const Index j = (i + 1) % 6;
+    faces.push_back({ i, j, j + 6 });
+    faces.push_back({ i, j + 6, i + 6 });
+  }
+  return MakeSurface(vertices, faces);
+}
+
+/// Per vertex of the input.
+Values MeanOf(const Surface& s, double fwhm = 0.0)
+{
+  const Result found = Estimate(s, fwhm);
+  return ToInput(found.Mesh(), found.Found.Mean, s.NumberOfVertices());
+}
+
+/// With the coordinates that files and VTK have.
+Surface InSinglePrecision(Surface s)
+{
+  s.Vertices = s.Vertices.cast<float>().cast<double>().eval();
+  return s;
+}
+
 } // namespace
+
+TEST(Curvature, OfPiecesThatDetermineNoPolynomialDoesNotDependOnTheAxes)
+{
+  std::vector<Surface> pieces = { Icosphere(0),
+    MakeSurface({ { 2, 2, 0 }, { 3, 3, 2 }, { 1, 1, 2 }, { 0, 2, 2 } },
+      { { 2, 1, 3 }, { 0, 3, 1 }, { 0, 2, 3 }, { 0, 1, 2 } }),
+    MakeSurface({ { 0, 0, 0 }, { 1, 0, 0.3 }, { 0, 1, 0.2 }, { -1, 0.2, 0.4 } },
+      { { 0, 1, 2 }, { 0, 2, 3 } }),
+    LPrism(3.0, 2.0, 0.5, 1.0, 0.7) };
+  for (Index seed = 0; seed < 10; ++seed)
+  {
+    pieces.push_back(Hull(5 + seed % 3, 10 * seed));
+  }
+  for (const Surface& s : pieces)
+  {
+    const Values expected = MeanOf(s);
+    for (const double angle : { 0.5, 1.0, 2.0 })
+    {
+      const Surface turned = Scaled(Rotated(s, angle), 1e3);
+      EXPECT_LT((1e3 * MeanOf(turned) - expected).cwiseAbs().maxCoeff(),
+        1e-9 * (1.0 + expected.cwiseAbs().maxCoeff()));
+    }
+  }
+}
+
+TEST(Curvature, OfConvexSolidsIsPositive)
+{
+  std::vector<Surface> solids = { Icosphere(0), Hull(4, 1) };
+  for (Index seed = 0; seed < 20; ++seed)
+  {
+    for (const Index points : { 6, 10, 20 })
+    {
+      solids.push_back(Hull(points, 7 * seed + points));
+    }
+  }
+  for (const Surface& s : solids)
+  {
+    EXPECT_GT(MeanOf(s).minCoeff(), 0.0) << s.NumberOfVertices();
+  }
+  for (Index seed = 0; seed < 100; ++seed)
+  {
+    const auto random = [&](int c) { return UniformRandom(5, c, seed); };
+    const double a = 1.0 + 4.0 * random(0);
+    const double b = 1.0 + 4.0 * random(1);
+    const Values mean = MeanOf(LPrism(
+      a, b, b * (0.1 + 0.8 * random(2)), a * (0.1 + 0.8 * random(3)), 0.05 + 5.0 * random(4)));
+    for (Index i = 0; i < 12; ++i)
+    {
+      EXPECT_TRUE(i % 6 == 3 || mean(i, 0) > 1e-3) << seed << ' ' << i << ' ' << mean(i, 0);
+    }
+  }
+}
+
+TEST(Curvature, OfASurfaceWithOneSideNeedsNoSeam)
+{
+  const Surface s = Moebius(60, 6);
+  const std::vector<Index> numbers = Permutation(s.NumberOfVertices(), 3);
+  const Surface other = Scaled(Rotated(Renumbered(s, numbers)), 1e-3);
+  // The same strip in two halves, which have two sides each.
+  const auto halfOf = [&](bool isFirst)
+  {
+    Surface half = s;
+    std::vector<std::array<Index, 3>> faces;
+    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+    {
+      const double y =
+        s.Vertices(s.Faces(t, 0), 1) + s.Vertices(s.Faces(t, 1), 1) + s.Vertices(s.Faces(t, 2), 1);
+      if ((y > 0.0) == isFirst)
+      {
+        faces.push_back({ s.Faces(t, 0), s.Faces(t, 1), s.Faces(t, 2) });
+      }
+    }
+    half.Faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+    for (std::size_t t = 0; t < faces.size(); ++t)
+    {
+      half.Faces.row(static_cast<Eigen::Index>(t)) << faces[t][0], faces[t][1], faces[t][2];
+    }
+    return half;
+  };
+  for (const double fwhm : { 0.0, 0.3 })
+  {
+    const Values found = MeanOf(s, fwhm);
+    const Values again = MeanOf(other, 1e-3 * fwhm) * 1e-3;
+    const Values first = MeanOf(halfOf(true), fwhm);
+    const Values second = MeanOf(halfOf(false), fwhm);
+    EXPECT_GT(found.maxCoeff(), 0.05);
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      ASSERT_NEAR(again(numbers[i], 0), found(i, 0), 1e-7) << fwhm;
+      const double y = s.Vertices(i, 1);
+      if (std::abs(y) > 0.8)
+      {
+        const double ofHalf = std::abs((y > 0.0 ? first : second)(i, 0));
+        ASSERT_NEAR(found(i, 0), ofHalf, fwhm > 0.0 ? 0.01 : 1e-9) << fwhm << ' ' << i;
+      }
+    }
+  }
+}
+
+TEST(Curvature, OfPlanesInSinglePrecisionIsZero)
+{
+  const Surface plane = Jittered(Plate(20, 1.0), 0.03, -0.99, 0.99, -0.99, 0.99);
+  const Surface coarse = Jittered(Plate(3, 1.0), 0.2, -0.99, 0.99, -0.99, 0.99);
+  for (const Surface& flat : { plane, coarse, Moved(plane, { 30.0, 0.0, 0.0 }) })
+  {
+    for (const double angle : { 0.3, 1.0, 2.2 })
+    {
+      const Surface s = InSinglePrecision(Scaled(Rotated(flat, angle), 37.0));
+      for (const double fwhm : { 0.0, 15.0 })
+      {
+        const Result found = Estimate(s, fwhm);
+        for (Index i = 0; i < found.Mesh().NumberOfVertices(); ++i)
+        {
+          ASSERT_EQ(found.Found.Curvedness(i), 0.0) << fwhm << ' ' << angle;
+          ASSERT_EQ(found.Found.ShapeIndex(i), 0.0);
+        }
+      }
+    }
+  }
+  // What is no rounding stays.
+  const Surface sphere = InSinglePrecision(Icosphere(6));
+  EXPECT_NEAR(MeanOf(sphere).minCoeff(), 1.0, 0.01);
+}
 
 /// Of half planes that meet in an edge, and of solids without other edges than sharp ones. Where no
 /// neighbours with normals at 60 degrees or more count, the sharpest ones are flat.

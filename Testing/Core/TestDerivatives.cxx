@@ -7,10 +7,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <string>
+#include <vector>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -330,11 +334,152 @@ TEST(Derivatives, TheCurlOfAGradientIsZero)
       { return Eigen::RowVectorXd::Constant(1, std::sin(2.0 * p[0]) * p[1] + p[2]); });
     const Values gradient = Compute(s, u, Quantity::Gradient, 0.0, true);
     EXPECT_LT(Compute(s, gradient, Quantity::Curl, 0.0, false, true).cwiseAbs().maxCoeff(), 1e-11);
-    // That of the divergence is the Laplacian.
+    // The divergence is the Laplacian inside.
     const Values laplacian = Compute(s, u, Quantity::Laplacian);
-    const Values divergence = Compute(s, gradient, Quantity::Divergence, 0.0, false, true);
-    EXPECT_LT(
-      (laplacian - divergence).cwiseAbs().maxCoeff(), 1e-11 * laplacian.cwiseAbs().maxCoeff());
+    Values difference = Compute(s, gradient, Quantity::Divergence, 0.0, false, true) - laplacian;
+    const auto mesh = MakeMesh(s);
+    for (const Index i : mesh->BoundaryVertices())
+    {
+      difference.row(mesh->InputVertex()[i]).setZero();
+    }
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-11 * laplacian.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST(Derivatives, TheLaplacianIsRightAtBoundaries)
+{
+  const auto square = [](const Eigen::RowVector3d& p)
+  { return Eigen::RowVectorXd::Constant(1, 3.0 + p[0] + p.squaredNorm()); };
+  for (const Drawn& s : { Plate(4, 1.0), UnevenPlate(), Scaled(Rotated(Disk(6)), 1e3) })
+  {
+    const Values found = Compute(s, Sample(s, 1, square), Quantity::Laplacian);
+    const auto mesh = MakeMesh(s);
+    for (const Index i : mesh->BoundaryVertices())
+    {
+      EXPECT_NEAR(found(mesh->InputVertex()[i], 0), 4.0, 1e-9);
+    }
+  }
+  // Of x on half a sphere: -2 x, also where the outermost triangles are on one side.
+  double last = 1.0;
+  for (const int level : { 3, 4, 5 })
+  {
+    Drawn s = Icosphere(level);
+    std::vector<std::array<Index, 3>> faces;
+    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+    {
+      if (s.Vertices(s.Faces(t, 0), 2) + s.Vertices(s.Faces(t, 1), 2) +
+          s.Vertices(s.Faces(t, 2), 2) >
+        0.0)
+      {
+        faces.push_back({ s.Faces(t, 0), s.Faces(t, 1), s.Faces(t, 2) });
+      }
+    }
+    s.Faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+    for (std::size_t t = 0; t < faces.size(); ++t)
+    {
+      s.Faces.row(static_cast<Eigen::Index>(t)) << faces[t][0], faces[t][1], faces[t][2];
+    }
+    const Values u = s.Vertices.col(0);
+    const Values found = Compute(s, u, Quantity::Laplacian);
+    const auto mesh = MakeMesh(s);
+    double worst = 0.0;
+    for (const Index i : mesh->BoundaryVertices())
+    {
+      const Index p = mesh->InputVertex()[i];
+      worst = std::max(worst, std::abs(found(p, 0) + 2.0 * u(p, 0)));
+    }
+    std::printf("Laplacian at the rim of half a sphere: error %.3g\n", worst);
+    EXPECT_LT(worst, 0.7 * last);
+    last = worst;
+  }
+}
+
+TEST(Derivatives, NoLaplacianIsSaidWhereNoneIsDetermined)
+{
+  const Drawn strip = Strip(8, 1);
+  DerivativesSettings settings;
+  settings.Quantity = Quantity::Laplacian;
+  const Values u = strip.Vertices.col(0);
+  const Solution found = Derivative(strip.Vertices, strip.Faces, u, settings);
+  EXPECT_TRUE(found.Result.array().isNaN().all());
+  ASSERT_EQ(found.Warnings.size(), 1U);
+  EXPECT_NE(found.Warnings[0].find("no Laplacian"), std::string::npos) << found.Warnings[0];
+}
+
+TEST(Derivatives, OfVectorsWithANormalPartConvergeOnIrregularMeshes)
+{
+  double last = 1.0;
+  for (const int level : { 4, 5, 6 })
+  {
+    Drawn s = Icosphere(level);
+    const double h = MeanEdge(*MakeMesh(s));
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        s.Vertices(i, c) += 0.2 * h * (2.0 * UniformRandom(9, c, i) - 1.0);
+      }
+      s.Vertices.row(i).normalize();
+    }
+    const Values up = Sample(s, 3, [](const auto&) { return Eigen::RowVector3d(0.0, 0.0, 1.0); });
+    const Values z = s.Vertices.col(2);
+    const double error = RootMeanSquareOf(Compute(s, up, Quantity::Divergence) + 2.0 * z);
+    const double ofCurl = RootMeanSquareOf(Compute(s, up, Quantity::Curl));
+    std::printf(
+      "e_z on an irregular sphere: errors of divergence and curl %.3g %.3g\n", error, ofCurl);
+    EXPECT_LT(error, 0.65 * last);
+    EXPECT_LT(ofCurl, error);
+    last = error;
+  }
+  EXPECT_LT(last, 0.03);
+}
+
+TEST(Derivatives, OfASurfaceWithOneSideNeedNoSeam)
+{
+  const Drawn s = Moebius(60, 6);
+  const std::vector<Index> numbers = Permutation(s.NumberOfVertices(), 3);
+  const Drawn other = Scaled(Renumbered(s, numbers), 1e-3);
+  const auto function = [](const Eigen::RowVector3d& p)
+  { return Eigen::RowVectorXd::Constant(1, std::sin(p[0]) * p[2] + 2.0 * p[1]); };
+  const auto field = [](const Eigen::RowVector3d& p)
+  { return Eigen::RowVector3d(p[1] * p[2], std::sin(3.0 * p[0]), 1.0 + p[2] * p[0]); };
+  const Values u = Sample(s, 1, function);
+  const Values v = Sample(s, 3, field);
+  const auto renumbered = [&](const Values& of)
+  {
+    Values result = of;
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      result.row(numbers[i]) = of.row(i);
+    }
+    return result;
+  };
+  for (const Quantity quantity : { Quantity::Gradient, Quantity::ConductionVelocity,
+         Quantity::Laplacian, Quantity::Divergence, Quantity::Curl })
+  {
+    const bool takesVectors = quantity == Quantity::Divergence || quantity == Quantity::Curl;
+    const double unit = quantity == Quantity::ConductionVelocity ? 1e3
+      : quantity == Quantity::Laplacian                          ? 1e-6
+                                                                 : 1e-3;
+    for (const double fwhm : { 0.0, 0.3 })
+    {
+      const Values& data = takesVectors ? v : u;
+      const Values found = Compute(s, data, quantity, fwhm);
+      const Values again = unit * Compute(other, renumbered(data), quantity, 1e-3 * fwhm);
+      EXPECT_LT(
+        (again - renumbered(found)).cwiseAbs().maxCoeff(), 1e-8 * found.cwiseAbs().maxCoeff())
+        << static_cast<int>(quantity) << ' ' << fwhm;
+    }
+  }
+  // At each vertex the gradient is near that of the function in space, projected.
+  const Values gradient = Compute(s, Values(s.Vertices.col(1)), Quantity::Gradient);
+  const Values onTriangles = Compute(s, Values(s.Vertices.col(1)), Quantity::Gradient, 0.0, true);
+  for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      EXPECT_LT((gradient.row(s.Faces(t, a)) - onTriangles.row(t)).norm(), 0.2);
+    }
   }
 }
 

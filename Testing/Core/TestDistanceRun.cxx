@@ -351,7 +351,8 @@ TEST(DistanceRun, WithoutADirectionHasTheMeanOfBothSpeeds)
     1e-12);
   settings.Method = DistanceMethod::Heat;
   EXPECT_EQ(ErrorOf(s, data, settings),
-    "Method is 0; allowed: 1 Eikonal together with AlongSpeed 16 and AcrossSpeed 0.25");
+    "Method is 0; allowed: 1 Eikonal or 3 Automatic together with AlongSpeed 16 and AcrossSpeed "
+    "0.25");
 }
 
 // A barrier of speed 0, and the same one as a mask: ways go around its free end.
@@ -405,8 +406,10 @@ TEST(DistanceRun, LabelsOfRegionsAreTheirValues)
   {
     const Solution found =
       From(s, { { 0, -2.0 }, { 7, 4.0 }, { 8, 4.0 }, { 30, 2.5 } }, {}, method);
-    const Solution alone[] = { From(s, { { 0, 1.0 } }), From(s, { { 7, 1.0 }, { 8, 1.0 } }),
-      From(s, { { 30, 1.0 } }) };
+    const DistanceMethod ofSources =
+      method == DistanceMethod::Heat ? DistanceMethod::Automatic : method;
+    const Solution alone[] = { From(s, { { 0, 1.0 } }, {}, ofSources),
+      From(s, { { 7, 1.0 }, { 8, 1.0 } }, {}, ofSources), From(s, { { 30, 1.0 } }, {}, ofSources) };
     const double names[] = { -2.0, 4.0, 2.5 };
     for (Index i = 0; i < s.NumberOfVertices(); ++i)
     {
@@ -478,7 +481,8 @@ TEST(DistanceRun, NamesWhatIsNotAllowed)
   expect(data, "all 1 nonzero points of Data are where Mask excludes the surface");
   data.Mask.Values.clear();
   data.Speeds.Values.assign(static_cast<std::size_t>(s.NumberOfVertices()), 1.0);
-  expect(data, "Method is 0; allowed: 1 Eikonal together with Speeds");
+  settings.Method = DistanceMethod::Heat;
+  expect(data, "Method is 0; allowed: 1 Eikonal or 3 Automatic together with Speeds");
   settings.Method = DistanceMethod::Eikonal;
   data.Speeds.Values[5] = -1.0;
   expect(data, "Speeds is -1 at point 5; allowed: finite numbers, 0 or more");

@@ -31,6 +31,18 @@ TEST(MedialMesh, HasAVertexForEveryEdge)
   }
 }
 
+TEST(MedialMesh, SplitsEdgesOfThreeTriangles)
+{
+  const auto mesh = MakeMesh(ThreeFins(3));
+  const MedialMesh medial(*mesh, true);
+  EXPECT_EQ(medial.Edges()->NumberOfVertices(), mesh->NumberOfEdges() + 2 * 3);
+  EXPECT_EQ(medial.Edges()->NumberOfComponents(), 3);
+  EXPECT_GT(medial.Edges()->ControlAreas().minCoeff(), 0.0);
+  const auto closed = MakeMesh(Icosphere(2));
+  EXPECT_EQ(MedialMesh(*closed, true).Edges()->TriangleVertices(),
+    MedialMesh(*closed).Edges()->TriangleVertices());
+}
+
 TEST(MedialMesh, HasAQuarterOfTheArea)
 {
   const auto mesh = MakeMesh(Icosphere(2));

@@ -99,6 +99,22 @@ TEST(PrincipalDirections, PlanesHaveNone)
   EXPECT_LT(result.Difference.maxCoeff(), 1e-9);
 }
 
+TEST(PrincipalDirections, PlanesInSinglePrecisionHaveNone)
+{
+  for (const double angle : { 0.3, 1.0, 2.2 })
+  {
+    Surface s = Rotated(Jittered(Plate(20, 1.0), 0.03, -0.99, 0.99, -0.99, 0.99), angle);
+    s.Vertices = s.Vertices.cast<float>().cast<double>().eval();
+    for (const double fwhm : { 0.0, 0.4 })
+    {
+      EXPECT_EQ(Find(s, fwhm).Directions.cwiseAbs().maxCoeff(), 0.0) << angle << ' ' << fwhm;
+    }
+  }
+  Surface torus = Torus(80, 40);
+  torus.Vertices = torus.Vertices.cast<float>().cast<double>().eval();
+  EXPECT_LT(ErrorOnTorus(torus), 0.02);
+}
+
 TEST(PrincipalDirections, OfASphereDifferLittle)
 {
   const double coarse = Find(Icosphere(3)).Difference.mean();

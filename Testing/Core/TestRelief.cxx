@@ -5,12 +5,14 @@
 
 #include "Core/Geometry/Relief.h"
 #include "Core/Geometry/SelfIntersections.h"
+#include "Core/Geometry/TriangleStars.h"
 #include "Core/Surface/EdgeRefinement.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
@@ -338,4 +340,187 @@ TEST(SelfIntersections, AreFoundAndTouchingIsNone)
     { { 0, 0, 0 }, { 2, -1, 0 }, { 2, 1, 0 }, { 1, 0, -1 }, { 1, 0, 1 }, { 3, 0, 1 }, { 3, 0, 2 } },
     { { 0, 1, 2 }, { 0, 3, 4 }, { 0, 5, 6 } });
   EXPECT_EQ(std::vector<char>({ 1, 1, 0 }), FindSelfIntersections(fan.Vertices, fan.Faces));
+}
+
+namespace
+{
+
+/// A roof of two triangles with the ridge along x at `height`, its eaves `depth` below; the ends are
+/// open.
+Surface Roof(double height, double depth, double shift = 0.0)
+{
+  return MakeSurface({ { shift, 0, height }, { shift + 2, 0, height },
+                       { shift + 1, 1, height - depth }, { shift + 1, -1, height - depth } },
+    { { 0, 1, 2 }, { 1, 0, 3 } });
+}
+
+Index CountCrossing(const Surface& s)
+{
+  const auto crosses = FindSelfIntersections(s.Vertices, s.Faces);
+  return static_cast<Index>(std::count(crosses.begin(), crosses.end(), 1));
+}
+
+} // namespace
+
+TEST(SelfIntersections, AlongSidesOfTrianglesAreThoseWhereTheSurfacePassesThrough)
+{
+  const Surface ground = MakeSurface({ { -9, -9, 0 }, { 9, -9, 0 }, { 0, 9, 0 } }, { { 0, 1, 2 } });
+  const Surface slope = MakeSurface(
+    { { 0, 0, 0 }, { 2, 0, 0 }, { 1, 1, 1 }, { 1, -1, -1 } }, { { 0, 1, 2 }, { 1, 0, 3 } });
+  const Surface wall = MakeSurface(
+    { { -1, 0, 0 }, { 4, 0, 0 }, { 1, 0, 1 }, { 1, 0, -1 } }, { { 0, 1, 2 }, { 1, 0, 3 } });
+  const std::vector<std::tuple<const char*, Surface, Index>> cases = {
+    { "a ridge on the ground", Joined(ground, Roof(0.0, 1.0)), 0 },
+    { "a valley on the ground", Joined(ground, Roof(0.0, -1.0)), 0 },
+    { "a slope through the ground", Joined(ground, slope), 3 },
+    { "its upper half on the ground", Joined(ground, { slope.Vertices, slope.Faces.topRows(1) }),
+      0 },
+    { "ridges in one line", Joined(Roof(0.0, 1.0), Roof(0.0, -1.0, 0.5)), 0 },
+    { "a flatter ridge in a ridge", Joined(Roof(0.0, 1.0), Roof(0.0, 2.0, 0.5)), 0 },
+    { "a ridge through a wall", Joined(wall, Roof(0.0, 1.0)), 4 },
+    { "a slope through a wall", Joined(wall, slope), 4 },
+    { "ridges in one line, apart", Joined(wall, Moved(slope, { 5.0, 0.0, 0.0 })), 0 },
+  };
+  for (const auto& [name, surface, count] : cases)
+  {
+    SCOPED_TRACE(name);
+    for (const double angle : { 0.0, 0.7, 2.0 })
+    {
+      const Surface s = Moved(Scaled(Rotated(surface, angle), 10.0), { 3.0, -5.0, 1.0 });
+      EXPECT_EQ(CountCrossing(s), count);
+      EXPECT_EQ(CountCrossing(Flipped(s)), count);
+      EXPECT_EQ(CountCrossing(Renumbered(s, Permutation(s.NumberOfVertices(), 3))), count);
+    }
+  }
+}
+
+TEST(SelfIntersections, AlongMeshLinesOfBothBodiesAreFound)
+{
+  const Surface cube = Refined(Cube(20.0), 5.1);
+  for (const double angle : { 0.0, 0.7 })
+  {
+    const auto beside = [&](const Row3& offset)
+    { return CountCrossing(Rotated(Joined(cube, Moved(cube, offset)), angle)); };
+    EXPECT_GT(beside({ 10.0, 7.0, 5.0 }), 50);
+    EXPECT_GT(beside({ 10.0, 5.0, 5.0 }), 50);
+    EXPECT_EQ(beside({ 20.0, 5.0, 5.0 }), 0); // faces touch
+    EXPECT_EQ(beside({ 20.0, 20.0, 5.0 }), 0); // edges touch
+    EXPECT_EQ(beside({ 20.0, 20.0, 20.0 }), 0); // corners touch
+    EXPECT_EQ(beside({ 21.0, 5.0, 5.0 }), 0);
+  }
+}
+
+namespace
+{
+
+/// Slices of a cone around its tip with the given number of triangles: its rim is uneven.
+Surface Cone(Index count)
+{
+  Surface s{ Points(count + 1, 3), Triangles(count, 3) };
+  s.Vertices.row(count) << 0.0, 0.0, 1.0;
+  for (Index i = 0; i < count; ++i)
+  {
+    const double angle = 2.0 * Pi * i / count;
+    const double radius = 1.0 + 0.3 * UniformRandom(5, 0, i);
+    s.Vertices.row(i) << radius * std::cos(angle), radius * std::sin(angle), 0.0;
+    s.Faces.row(i) << i, (i + 1) % count, count;
+  }
+  return Rotated(s);
+}
+
+/// Pages of one triangle around an edge.
+Surface Book(Index count)
+{
+  Surface s{ Points(count + 2, 3), Triangles(count, 3) };
+  s.Vertices.row(count) << 0.0, 0.0, 0.0;
+  s.Vertices.row(count + 1) << 0.0, 0.0, 1.0;
+  for (Index i = 0; i < count; ++i)
+  {
+    const double angle = 2.0 * Pi * i / count;
+    s.Vertices.row(i) << std::cos(angle), std::sin(angle), 0.5;
+    s.Faces.row(i) << count, count + 1, i;
+  }
+  return Rotated(s);
+}
+
+} // namespace
+
+TEST(TriangleStars, LeaveFewPairsOfTrianglesAroundAVertexOrAnEdge)
+{
+  const Index count = 5000;
+  for (const Surface& s :
+    { Cone(count), Book(count), Joined(Cone(count), Moved(Book(count), { 9, 9, 9 })) })
+  {
+    const TriangleStars stars(s.Vertices, s.Faces);
+    Index pairs = 0;
+    Index all = 0;
+    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+    {
+      TriangleStars::Box box;
+      for (int a = 0; a < 3; ++a)
+      {
+        box.extend(s.Vertices.row(s.Faces(t, a)).transpose());
+      }
+      stars.VisitMeeting(
+        t, [&](const TriangleStars::Box& other) { return box.intersects(other); },
+        [&](Index) { ++pairs; });
+    }
+    stars.Visit([](const TriangleStars::Box&) { return true; }, [&](Index) { ++all; });
+    EXPECT_EQ(all, s.NumberOfTriangles());
+    EXPECT_LT(pairs, 100 * s.NumberOfTriangles());
+  }
+}
+
+/// The star of a vertex with folds, cut by a plane: the same triangles cross in a star that is
+/// large and in the halves of it that are not.
+TEST(TriangleStars, HaveAllTrianglesThatCross)
+{
+  const Index count = 300;
+  Surface s = Cone(count);
+  for (Index i = 0; i < count; i += 10) // the slice beside it is folded over its neighbours
+  {
+    s.Vertices.row(i) = s.Vertices.row((i + 17) % count) * 1.01 + Row3(0.01, 0.02, 0.015);
+  }
+  const auto crosses = FindSelfIntersections(s.Vertices, s.Faces);
+  Index found = 0;
+  for (Index t = 0; t < count; ++t)
+  {
+    bool any = false;
+    for (Index u = 0; u < count && !any; ++u)
+    {
+      Surface two = s;
+      two.Faces.resize(2, 3);
+      two.Faces.row(0) = s.Faces.row(t);
+      two.Faces.row(1) = s.Faces.row(u);
+      any = u != t && FindSelfIntersections(two.Vertices, two.Faces)[0];
+    }
+    EXPECT_EQ(static_cast<bool>(crosses[t]), any) << t;
+    found += any;
+  }
+  EXPECT_GT(found, 30);
+}
+
+TEST(Relief, RepeatedTrianglesCountOnce)
+{
+  const Surface box = Refined(Box(20.0, 30.0, 10.0), 3.0);
+  Surface twice = Joined(box, box);
+  twice.Faces.bottomRows(box.Faces.rows()) = box.Faces;
+  for (Index t = 0; t < box.NumberOfTriangles(); t += 3) // opposite ones
+  {
+    std::swap(
+      twice.Faces(box.NumberOfTriangles() + t, 0), twice.Faces(box.NumberOfTriangles() + t, 2));
+  }
+  twice.Vertices = box.Vertices;
+  const Vector heights = Vector::Constant(box.NumberOfVertices(), 0.5);
+  const Relief expected = MakeRelief(box.Vertices, box.Faces, heights);
+  const Relief relief = MakeRelief(twice.Vertices, twice.Faces, heights);
+  EXPECT_EQ(expected.RepeatedTriangles, 0);
+  EXPECT_EQ(relief.RepeatedTriangles, box.NumberOfTriangles());
+  EXPECT_EQ(relief.NonManifoldEdges, 0);
+  EXPECT_EQ(relief.OpenEdges, 0);
+  EXPECT_EQ(relief.Places, expected.Places);
+  EXPECT_EQ(relief.VolumeChange, expected.VolumeChange);
+  EXPECT_EQ(relief.Faces.rows(), 2 * box.NumberOfTriangles());
+  EXPECT_NEAR(
+    VolumeOf(relief.Places, relief.Faces), 2.0 * VolumeOf(expected.Places, expected.Faces), 1e-8);
 }

@@ -188,6 +188,30 @@ std::shared_ptr<const TriangleMesh> FlatTorus(Index cells)
 
 } // namespace
 
+TEST(StructureTensor, AcrossEdgesOfThreeTrianglesDoesNotDependOnTheAxes)
+{
+  const Surface s = ThreeFins(6);
+  Vector expected;
+  for (const double angle : { 0.0, 0.7, 2.0, 4.0 })
+  {
+    const Surface turned = Rotated(s, angle);
+    const auto assembler = MakeAssembler(turned);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values u = Sample(mesh, s,
+      [](const Eigen::RowVector3d& x) { return std::sin(6.0 * x[0] + 4.0 * x[1]) + x[2]; });
+    const auto structure = MakeStructure(assembler, { 1.0, 2.0 }, 1e-12);
+    StepReport report;
+    structure->Evaluate(u, report, ProgressMonitor());
+    Vector found(mesh.NumberOfTriangles());
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      found[mesh.InputTriangle()[t]] = structure->Deviators().row(t).norm();
+    }
+    expected = angle == 0.0 ? found : expected;
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-8 * expected.maxCoeff());
+  }
+}
+
 TEST(StructureDiffusion, OrientationOfHelicalStripesIsFoundInNoise)
 {
   const HelicalStripes stripes;

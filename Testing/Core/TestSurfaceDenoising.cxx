@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "BlockParts.h"
 #include "Core/Geometry/FaceFlips.h"
 #include "Core/Geometry/LinearNormals.h"
 #include "Core/Geometry/SurfaceDenoising.h"
@@ -620,25 +621,111 @@ TEST(SurfaceDenoising, DoesNotDependOnTheNumberingOfPoints)
   EXPECT_EQ(LargestDistance(Denoised(Renumbered(noisy, number)), expected), 0.0);
 }
 
-/// The spheres are so small that they share statistics.
 TEST(SurfaceDenoising, ScaledCopiesTogetherAreEachDenoisedAsAlone)
 {
-  for (const bool isLarge : { false, true })
+  const Surface noisy = NoisyAlongNormals(LBlock(12), 0.2);
+  DenoisingReport one;
+  const Surface alone = Denoised(noisy, DenoisingSettings(), {}, &one);
+  EXPECT_GT(LargestDistance(alone, noisy), 0.05);
+  for (const double scale : { 0.125, 16.0 })
   {
-    const Surface noisy = NoisyAlongNormals(isLarge ? LBlock(12) : Icosphere(2), 0.2);
-    DenoisingReport one;
-    const Surface alone = Denoised(noisy, DenoisingSettings(), {}, &one);
-    EXPECT_GT(LargestDistance(alone, noisy), 0.05);
-    for (const double scale : { 0.125, 16.0 })
+    DenoisingReport report;
+    const Surface together =
+      Denoised(Joined(noisy, Scaled(noisy, scale)), DenoisingSettings(), {}, &report);
+    EXPECT_EQ(together.Vertices, Joined(alone, Scaled(alone, scale)).Vertices);
+    EXPECT_EQ(report.Type, one.Type);
+    EXPECT_EQ(report.CoarseParts, 0);
+  }
+}
+
+namespace
+{
+
+/// A third of the cubes of a grid, whose corners are all vertices.
+Surface Rubble(int size)
+{
+  std::set<Block> blocks;
+  for (int i = 0; i < size * size * size; ++i)
+  {
+    if (UniformRandom(11, 0, i) < 0.35)
     {
-      DenoisingReport report;
-      const Surface together =
-        Denoised(Joined(noisy, Scaled(noisy, scale)), DenoisingSettings(), {}, &report);
-      EXPECT_LE(LargestDistance(together, Joined(alone, Scaled(alone, scale))),
-        isLarge ? 0.0 : 1e-9 * scale);
-      EXPECT_EQ(report.Type, one.Type);
+      blocks.insert({ i % size, i / size % size, i / size / size });
     }
   }
+  return BlockPart(blocks);
+}
+
+/// Circles of latitude, between which quadrilaterals are cut in two.
+Surface GlobeOfQuadrilaterals(Index around, Index circles)
+{
+  Surface s = Cylinder(around, circles, 1.0, 1.0);
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
+  {
+    const double angle = (s.Vertices(i, 2) - s.Vertices.col(2).mean()) * 3.0;
+    s.Vertices.row(i) << std::cos(angle) * s.Vertices(i, 0), std::cos(angle) * s.Vertices(i, 1),
+      std::sin(angle);
+  }
+  return s;
+}
+
+} // namespace
+
+TEST(SurfaceDenoising, CoarseShapesStayUnlessALevelIsGiven)
+{
+  Surface lens = Icosphere(0);
+  lens.Vertices.col(0) *= 3.0;
+  const std::vector<std::pair<const char*, Surface>> shapes = { { "icosahedron", lens },
+    { "cube", Cube() }, { "frame", Frame() }, { "bracket", Bracket() },
+    { "cylinder", ClosedCylinder(60, 1.0, 3.0) }, { "rubble", Rubble(7) },
+    { "globe", GlobeOfQuadrilaterals(8, 6) } };
+  for (const auto& [name, shape] : shapes)
+  {
+    SCOPED_TRACE(name);
+    const Surface s = Scaled(Rotated(shape, 0.3), 1e3);
+    DenoisingReport report;
+    EXPECT_EQ(Denoised(s, DenoisingSettings(), {}, &report).Vertices, s.Vertices);
+    EXPECT_EQ(report.CoarseParts, report.Parts);
+    EXPECT_EQ(report.NoiseLevel, 0.0);
+    DenoisingSettings given;
+    given.NoiseLevel = 0.1 * MeanEdgeLength(s);
+    EXPECT_GT(LargestDistance(Denoised(s, given, {}, &report), s), 0.0);
+    EXPECT_EQ(report.CoarseParts, 0);
+  }
+}
+
+TEST(SurfaceDenoising, ACoarsePartBesideANoisyOneStays)
+{
+  const Surface noisy = NoisyAlongNormals(LBlock(12), 0.2);
+  const Surface coarse = Moved(Bracket(), { 30.0, 0.0, 0.0 });
+  DenoisingReport report;
+  const Surface together = Denoised(Joined(noisy, coarse), DenoisingSettings(), {}, &report);
+  EXPECT_EQ(together.Vertices, Joined(Denoised(noisy), coarse).Vertices);
+  EXPECT_EQ(report.Parts, 2);
+  EXPECT_EQ(report.CoarseParts, 1);
+}
+
+TEST(SurfaceDenoising, ChangesOfTheVolumeOfAPartAreReported)
+{
+  const Surface noisy = NoisyAlongNormals(LBlock(12), 0.2);
+  DenoisingReport report;
+  Denoised(noisy, DenoisingSettings(), {}, &report);
+  EXPECT_LT(std::abs(report.VolumeChange), 0.01);
+  const Surface rod = Moved(ClosedCylinder(8, 0.3, 1.0), { 30.0, 0.0, 0.0 });
+  DenoisingSettings given;
+  given.NoiseLevel = 0.3;
+  const Surface all = Joined(Cube(9.0), rod); // both are coarse
+  const Surface result = Denoised(all, given, {}, &report);
+  const Index corners = 8; // of the cube
+  const auto change = [&](Index first, Index count, const Surface& part)
+  {
+    const Surface before{ all.Vertices.middleRows(first, count), part.Faces };
+    const Surface after{ result.Vertices.middleRows(first, count), part.Faces };
+    return Volume(after) / Volume(before) - 1.0;
+  };
+  const double ofCube = change(0, corners, Cube());
+  const double ofRod = change(corners, rod.NumberOfVertices(), rod);
+  EXPECT_NEAR(report.VolumeChange, std::min(ofCube, ofRod), 1e-9);
+  EXPECT_LT(report.VolumeChange, -0.02);
 }
 
 TEST(SurfaceDenoising, ComponentsOfDifferentTypesKeepTheirs)

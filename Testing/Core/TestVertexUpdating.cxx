@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "BlockParts.h"
 #include "Core/Geometry/VertexUpdating.h"
 #include "HarmonicMaps.h"
 
@@ -44,6 +45,29 @@ Surface Noisy(Surface s, double amount)
   return s;
 }
 
+/// The means of the normals around the vertices.
+Values VertexNormals(const TriangleMesh& mesh, const Surface& s)
+{
+  Values normals = Values::Zero(mesh.NumberOfVertices(), 3);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      normals.row(mesh.TriangleVertices()(t, a)) += FaceNormal(s, mesh.InputTriangle()[t]);
+    }
+  }
+  normals.rowwise().normalize();
+  return normals;
+}
+
+/// No vectors before: the triangles turn to those after.
+PointData Unknown(Index count)
+{
+  PointData before = PointData::FromValues(Values::Zero(count, 3));
+  before.Missing.setConstant(true);
+  return before;
+}
+
 } // namespace
 
 TEST(VertexUpdating, NoisyPlaneWithExactNormalsBecomesFlat)
@@ -55,7 +79,8 @@ TEST(VertexUpdating, NoisyPlaneWithExactNormalsBecomesFlat)
   normals.rowwise() = FaceNormal(flat, 0);
   VertexMotion motion;
   Surface fitted = s;
-  fitted.Vertices = UpdateVerticesFromNormals(mesh, s.Vertices, normals, 10.0, motion);
+  fitted.Vertices = UpdateVerticesFromNormals(
+    mesh, s.Vertices, Unknown(mesh.NumberOfVertices()), normals, 10.0, motion);
   EXPECT_GT(MeanAngle(s, flat), 5.0);
   EXPECT_LT(MeanAngle(fitted, flat), 1e-2);
   // No vertex moves along the plane, and the mean plane stays.
@@ -77,8 +102,8 @@ struct TiltedStrip
   {
     Values normals(this->Mesh.NumberOfVertices(), 3);
     normals.rowwise() = Eigen::RowVector3d(0.0, 0.6, 0.8);
-    return UpdateVerticesFromNormals(
-      this->Mesh, this->Noise.Vertices, normals, 10.0, motion, limits, factorize);
+    return UpdateVerticesFromNormals(this->Mesh, this->Noise.Vertices,
+      Unknown(this->Mesh.NumberOfVertices()), normals, 10.0, motion, limits, factorize);
   }
 };
 
@@ -131,8 +156,8 @@ TEST(VertexUpdating, NoisySphereIsSmoothedAtConstantVolume)
   const Values normals = SampleUnit(mesh, clean, 3, [](const Eigen::RowVector3d& x) { return x; });
   VertexMotion motion;
   Surface fitted = s;
-  fitted.Vertices = UpdateVerticesFromNormals(
-    mesh, s.Vertices, normals, 5.0 * MeanEdge(mesh) * mesh.LengthUnit(), motion);
+  fitted.Vertices = UpdateVerticesFromNormals(mesh, s.Vertices, Unknown(mesh.NumberOfVertices()),
+    normals, 5.0 * MeanEdge(mesh) * mesh.LengthUnit(), motion);
   std::printf("angle %.2f -> %.2f degrees, volume %.4f -> %.4f, moved %.4f (mean), %.4f (most)\n",
     MeanAngle(s, clean), MeanAngle(fitted, clean), motion.VolumeBefore, motion.VolumeAfter,
     motion.MeanDisplacement, motion.MaximumDisplacement);
@@ -149,6 +174,43 @@ TEST(VertexUpdating, NoisySphereIsSmoothedAtConstantVolume)
   EXPECT_NEAR(motion.MaximumDisplacement, largest, 1e-15);
 }
 
+/// Shapes whose corners have normals that are far apart.
+TEST(VertexUpdating, VectorsThatHaveNotChangedMoveNothing)
+{
+  for (const Surface& shape : { Tetrahedron(), Icosphere(0), Cube(), Bracket(), Frame(), Disk(1),
+         ThreeFins(2), Moebius(5, 1), Noisy(Icosphere(2), 0.1) })
+  {
+    const Surface s = Scaled(Rotated(shape), 1e3);
+    const TriangleMesh mesh(s.Vertices, s.Faces);
+    Values normals = VertexNormals(mesh, s);
+    const PointData before = PointData::FromValues(normals);
+    VertexMotion motion;
+    EXPECT_EQ(
+      UpdateVerticesFromNormals(mesh, s.Vertices, before, normals, 1e3, motion), s.Vertices);
+    EXPECT_EQ(motion.MaximumDisplacement, 0.0);
+    // Signs that differ are those of lines: points move by round-off only.
+    normals.row(0) *= -1.0;
+    UpdateVerticesFromNormals(mesh, s.Vertices, before, normals, 1e3, motion);
+    EXPECT_LT(motion.MaximumDisplacement, 1e-9);
+  }
+}
+
+TEST(VertexUpdating, TrianglesTurnAsTheirVectorsDo)
+{
+  const Surface s = Noisy(Icosphere(2), 0.05);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  const Eigen::Matrix3d turn =
+    Eigen::AngleAxisd(0.02, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  const Values normals = VertexNormals(mesh, s);
+  VertexMotion motion;
+  Surface moved = s;
+  moved.Vertices = UpdateVerticesFromNormals(
+    mesh, s.Vertices, PointData::FromValues(normals), normals * turn.transpose(), 1e3, motion);
+  Surface rotated = s;
+  rotated.Vertices = s.Vertices * turn.transpose();
+  EXPECT_LT(MeanAngle(moved, rotated), 0.2 * MeanAngle(s, rotated));
+}
+
 TEST(VertexUpdating, DoesNotDependOnPlaceSizeOrOrientation)
 {
   const Surface s = Noisy(Icosphere(2), 0.03);
@@ -158,7 +220,8 @@ TEST(VertexUpdating, DoesNotDependOnPlaceSizeOrOrientation)
     const Values normals = SampleUnit(mesh, surface, 3,
       [&](const Eigen::RowVector3d& x) { return Eigen::RowVector3d(x - centre); });
     VertexMotion motion;
-    return UpdateVerticesFromNormals(mesh, surface.Vertices, normals, 0.7 * scale, motion);
+    return UpdateVerticesFromNormals(
+      mesh, surface.Vertices, Unknown(mesh.NumberOfVertices()), normals, 0.7 * scale, motion);
   };
   const Eigen::RowVector3d origin = Eigen::RowVector3d::Zero();
   const Eigen::RowVector3d away(300.0, -200.0, 50.0);

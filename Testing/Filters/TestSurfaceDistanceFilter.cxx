@@ -260,7 +260,8 @@ TEST(DistanceFilter, ArrivalTimesFollowTheDirection)
   filter->Update();
   EXPECT_NEAR(At(filter, 21 * 5 + 9, "ArrivalTime"), 6.0, 1e-12);
   filter->SetMethodToHeat();
-  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal together with AlongSpeed 4"));
+  EXPECT_TRUE(Has(
+    ErrorOf(filter), "Method is 0; allowed: 1 Eikonal or 3 Automatic together with AlongSpeed 4"));
 }
 
 TEST(DistanceFilter, IsInfiniteWhereNoWayLeads)
@@ -381,7 +382,7 @@ TEST(DistanceFilter, StopsWhenItIsAborted)
 {
   const auto sphere = Sphere(6);
   AddPointArray(sphere, "source", 1, [](vtkIdType i, int) { return i == 9 ? 1.0 : 0.0; });
-  for (const int method : { 0, 1 })
+  for (const int method : { 0, 1, 2 })
   {
     auto filter = MakeFilter(sphere);
     filter->SetMethod(method);
@@ -433,7 +434,8 @@ TEST(DistanceFilter, NamesWhatIsNotAllowed)
   EXPECT_TRUE(
     Has(ErrorOf(filter), "SpeedArray is -1 at point 0; allowed: finite numbers, 0 or more"));
   filter->SetMethodToHeat();
-  EXPECT_TRUE(Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal together with SpeedArray"))
+  EXPECT_TRUE(
+    Has(ErrorOf(filter), "Method is 0; allowed: 1 Eikonal or 3 Automatic together with SpeedArray"))
     << ErrorOf(filter);
   SetInputArray(filter, 8, "");
   filter->SetMaximumDistance(-2.0);
@@ -452,6 +454,34 @@ TEST(DistanceFilter, NamesWhatIsNotAllowed)
     Has(ErrorOf(filter), "no source is on the surface: of the points and lines, 1 are farther"));
   filter->SetMaximumDistance(0.0);
   EXPECT_EQ(ErrorOf(filter), "");
+  // Colours are active, and nobody has chosen an array.
+  const auto coloured = Grid(9, 5);
+  coloured->GetPointData()->SetScalars(MakeArray(VTK_UNSIGNED_CHAR, "rgb",
+    coloured->GetNumberOfPoints(), 3, [](vtkIdType i, int k) { return i + k; }));
+  vtkNew<Filter> unset;
+  unset->SetInputData(coloured);
+  EXPECT_TRUE(Has(ErrorOf(unset),
+    "SourceArray is not set, and the active array \"rgb\" has 3 components; allowed: 1"))
+    << ErrorOf(unset);
+}
+
+TEST(DistanceFilter, TakesTheExactMethodUnlessThereAreTimes)
+{
+  const auto grid = MarkedGrid(9, 5, 3);
+  AddPointArray(grid, "start", 1, [](vtkIdType, int) { return 7.0; });
+  vtkNew<Filter> filter;
+  filter->SetInputData(grid);
+  SetInputArray(filter, 0, "source");
+  EXPECT_EQ(filter->GetMethod(), Filter::METHOD_AUTOMATIC);
+  filter->Update();
+  EXPECT_EQ(filter->GetEffectiveMethod(), Filter::METHOD_EXACT);
+  EXPECT_NEAR(At(filter, 44), DistanceOf(filter, 44, { 3.0, 0.0, 0.0 }), 1e-13);
+  SetInputArray(filter, 9, "start");
+  filter->Update();
+  EXPECT_EQ(filter->GetEffectiveMethod(), Filter::METHOD_EIKONAL);
+  filter->SetMethodToExact();
+  EXPECT_TRUE(Has(
+    ErrorOf(filter), "Method is 2; allowed: 1 Eikonal or 3 Automatic together with SourceTimes"));
 }
 
 TEST(DistanceFilter, WarnsAboutSourcesThatDoNotCount)

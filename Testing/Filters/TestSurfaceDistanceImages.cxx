@@ -67,6 +67,7 @@ TEST(DistanceImages, ByHeatAreSmoothWhereFrontsMeet)
   vtkNew<vtkSurfaceDistanceFilter> filter;
   filter->SetInputData(scene.Surface);
   filter->SetInputData(1, scene.Sources);
+  filter->SetMethodToHeat();
   EXPECT_LE(BandedImage::Error(filter, 0.0, 1.2, "DistanceHeat"), ImageTest::Tolerance);
   filter->SetMethodToEikonal(); // whose fronts have kinks
   EXPECT_GT(

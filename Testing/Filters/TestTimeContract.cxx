@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 using namespace FilterTest;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -27,6 +28,14 @@ vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface, bool timeStep
   filter->SetInputData(surface);
   filter->SetGenerateTimeSteps(timeSteps);
   return filter;
+}
+
+vtkSmartPointer<vtkPolyData> Halves()
+{
+  auto grid = Grid(12, 12);
+  AddPointArray(grid, "f", 1, [](vtkIdType i, int) { return i % 12 < 6 ? 0.0 : 1.0; });
+  grid->GetPointData()->SetActiveScalars("f");
+  return grid;
 }
 
 double DataTime(vtkAlgorithm* filter, int port = 0)
@@ -316,6 +325,37 @@ TEST(TimeContract, AnInputWithARangeButNoStepsIsAskedForItsStart)
   EXPECT_EQ(source->Executions, 1);
 }
 
+TEST(TimeContract, OneWarningSaysThatTheTimesOfTheInputAreNotFollowed)
+{
+  vtkNew<TimeSource> source;
+  const auto first = MakeFilter(Halves());
+  vtkNew<vtkFVMHeatFilter> behind;
+  const std::pair<vtkAlgorithm*, const char*> producers[] = {
+    { source,
+      "GenerateTimeSteps is on and the input has times from 10 to 30: all results are of the "
+      "input at 10; to follow its times, set GenerateTimeSteps to off" },
+    { first,
+      "GenerateTimeSteps is on and the input has times from 0 to 10: all results are of the "
+      "input at 0;" },
+  };
+  for (const auto& [producer, words] : producers)
+  {
+    behind->SetInputConnection(producer->GetOutputPort());
+    behind->GenerateTimeStepsOn();
+    Messages messages(behind);
+    UpdateAt(behind, 4.0);
+    UpdateAt(behind, 7.0);
+    ASSERT_EQ(messages.Warnings.size(), 1u) << words;
+    EXPECT_NE(messages.Warnings[0].find(words), std::string::npos) << messages.Warnings[0];
+    behind->GenerateTimeStepsOff();
+    UpdateAt(behind, 20.0);
+    EXPECT_EQ(messages.Warnings.size(), 1u);
+  }
+  Messages messages(first);
+  UpdateAt(first, 3.0);
+  EXPECT_TRUE(messages.Warnings.empty()) << "the input has no times";
+}
+
 TEST(TimeContract, TheInputsOwnTimePassesThroughWithoutTimeSteps)
 {
   vtkNew<TimeSource> source;
@@ -394,19 +434,6 @@ TEST(TimeContract, TheHistoryHasARowPerStepAndTheDocumentedColumns)
   EXPECT_GT(residual, 0.0);
   EXPECT_LE(residual, filter->GetTolerance());
 }
-
-namespace
-{
-
-vtkSmartPointer<vtkPolyData> Halves()
-{
-  auto grid = Grid(12, 12);
-  AddPointArray(grid, "f", 1, [](vtkIdType i, int) { return i % 12 < 6 ? 0.0 : 1.0; });
-  grid->GetPointData()->SetActiveScalars("f");
-  return grid;
-}
-
-} // namespace
 
 TEST(TimeContract, ARunThatEndsEarlyPublishesTheStepsThatItHas)
 {

@@ -110,7 +110,7 @@ TEST(TuringTextureFilter, GrowsSpotsFromNoise)
   vtkDataArray* u2 = Result(filter, "u2");
   ASSERT_TRUE(AllFinite(u1) && AllFinite(u2));
   EXPECT_EQ(u1->GetDataType(), VTK_DOUBLE);
-  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), u1);
+  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), Result(filter, "Texture"));
   EXPECT_GE(Low(u2), 0.0);
   EXPECT_GT(High(u2), 6.0); // around the steady state 4
   EXPECT_NEAR(Low(Result(filter, "Texture")), 0.0, 1e-12);
@@ -144,6 +144,9 @@ TEST(TuringTextureFilter, WarnsOnceWhyNoPatternGrows)
   auto filter = MakeFilter(sphere);
   filter->SetDiffusionRate1(3.0 * 2.6);
   EXPECT_TRUE(Contains(WarningOf(filter), "more than 4 times that of u2, and is 3 times"));
+  filter->SetDiffusionRate1(0.0);
+  filter->SetDiffusionRate2(0.0);
+  EXPECT_TRUE(Contains(WarningOf(filter), "more than 4 times that of u2, and both are 0"));
 
   filter = MakeFilter(sphere);
   filter->SetDecayRate(14.0);

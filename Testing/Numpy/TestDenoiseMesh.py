@@ -47,6 +47,29 @@ class DenoiseMesh(unittest.TestCase):
                         0.3 * angles(noisy.points, clean.points, clean.triangles).mean())
         self.assertEqual(result.warnings, [])
 
+    def test_coarse_shapes_stay_and_the_line_names_the_level(self):
+        corners = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        squares = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+        box = sd.Surface(np.array(corners, float), squares)
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "the surface has too few points on smooth faces "
+                                   "to tell noise from shape, .* [(]to remove noise, set noise_level[)]"):
+            result = sd.denoise_mesh(box)
+        self.assertEqual(len(result.warnings), 1)
+        np.testing.assert_array_equal(result.points, box.points)
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            changed = sd.denoise_mesh(box, noise_level=0.3)
+        self.assertGreater(np.abs(changed.points - box.points).max(), 0)
+        loss = 100 * (changed.volume_after / changed.volume_before - 1)
+        self.assertIn(f"the volume of a part changes by {loss:.6g} %", " ".join(str(w.message) for w in found))
+        noisy, _ = noisy_sphere(refinements=4)
+        both = sd.Surface(np.vstack([noisy.points, box.points + 3]),
+                          np.vstack([noisy.triangles, box.triangles + noisy.n_points]))
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "1 of 2 parts have too few points"):
+            result = sd.denoise_mesh(both)
+        np.testing.assert_array_equal(result.points[noisy.n_points:], box.points + 3)
+        np.testing.assert_array_equal(result.points[:noisy.n_points], sd.denoise_mesh(noisy).points)
+
     def test_a_cube_is_found_to_be_cad_and_keeps_its_edges(self):
         ball = sd.sphere(5)
         clean = cube_of(ball)

@@ -50,7 +50,7 @@ class Distance(unittest.TestCase):
         surface = sd.sphere(4, 50.0)
         exact = 50.0 * great_circles(surface, 17)
         heat = np.abs(sd.distance(surface, 17, method="Heat") - exact).mean()
-        fronts = np.abs(sd.distance(surface, 17) - exact).mean()
+        fronts = np.abs(sd.distance(surface, 17, method="Eikonal") - exact).mean()
         self.assertLess(heat, 0.005 * 50.0 * np.pi)
         self.assertLess(fronts, heat)
         masked = sd.distance(surface, 17, method="Heat", mask=surface.points[:, 2] < 0.0)
@@ -73,7 +73,8 @@ class Distance(unittest.TestCase):
         np.testing.assert_array_equal(found.distance, alone.min(axis=0))
         later = sd.nearest_sources(surface, sources, start=[0.0, 9.0, 9.0, 9.0])
         self.assertTrue((later.source == 0).all())
-        np.testing.assert_allclose(later.distance, alone[0], atol=1e-12)
+        fronts = sd.distance(surface, 3, method="Eikonal")
+        np.testing.assert_allclose(later.distance, fronts, atol=1e-12)
 
     def test_speeds_on_faces_and_points_scale_times(self):
         surface = grid(10)
@@ -168,9 +169,74 @@ class Distance(unittest.TestCase):
             warnings.simplefilter("error")
             near = sd.distance(surface, places)
         with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
-                                   "^half of the sources are .* or more from the surface, which is .* large"):
+                                   "^half of the points of the sources are .* or more from the surface"):
             far = sd.distance(surface, 1000 * places)
         np.testing.assert_allclose(far, near, atol=1e-2)
+
+    def test_ways_stay_on_open_surfaces_and_turn_at_their_corners(self):
+        kite = [[0.04, 0.1, 0], [0.01, 0.83, 0], [0.99, 0.27, 0], [0.47, 0.03, 0]]
+        v = [[-4, 3, 0], [0, 0, 0], [4, 3, 0], [-4, 2, 0], [0, -1.2, 0], [4, 2, 0]]
+        gap = [[0, 0, 0], [-1, 1, 0], [1, 1, 0], [0, 3, 0], [-1.5, 0.5, 0], [1.5, 0.5, 0]]
+        strips = [[[0, 0, 0], [1, 0, 0], [0.4, 0.9, 0], [-0.949, -0.1934, 0], [-1.2736, 1.8094, 0]],
+                  [[0, 0, 0], [1, 0, 0], [0.4, 0.9, 0], [0.0335, 0.9238, 0], [-0.5588, 0.1683, 0],
+                   [-0.8595, 0.2371, 0]]]
+        straight = np.linalg.norm(np.subtract(strips[1][5], strips[1][1]))
+        cases = [(kite, [[3, 2, 1], [0, 3, 1]], 0, 2, np.linalg.norm(np.subtract(kite[0], kite[2]))),
+                 (v, [[0, 3, 1], [3, 4, 1], [1, 4, 5], [1, 5, 2]], 0, 2, 10.0),
+                 (v, [[0, 3, 1], [3, 4, 1], [1, 4, 5], [1, 5, 2]], 0, 4, (16 + 4.2**2)**0.5),
+                 (gap, [[0, 1, 4], [0, 5, 2], [1, 2, 3]], 0, 3, 2**0.5 + 5**0.5),
+                 (strips[0], [[0, 1, 2], [2, 0, 3], [3, 2, 4]], 0, 4,
+                  np.linalg.norm(np.subtract(strips[0][0], strips[0][4])))]
+        for points, faces, source, target, exact in cases:
+            for method, worst in (("Automatic", 1e-11), ("Exact", 1e-11), ("Eikonal", 0.01)):
+                found = sd.distance((points, faces), source, method=method)[target]
+                self.assertGreater(found, exact * (1 - worst), (points, method))
+                self.assertLess(found, exact * (1 + worst), (points, method))
+        for method in ("Exact", "Eikonal"):
+            found = sd.distance((strips[1], [[0, 1, 2], [2, 0, 3], [3, 0, 4], [4, 3, 5]]), 5, method=method)
+            self.assertGreater(found[1], straight * (1 - 1e-12))
+
+    def test_distances_over_tetrahedra_are_at_most_their_edges(self):
+        faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        random = np.random.default_rng(0)
+        for scale in (1.0, 1e3, 1e-3):
+            for _ in range(40):
+                points = scale * random.normal(size=(4, 3)) * [3.0, 1.0, 1.0]
+                edges = np.linalg.norm(points[1:] - points[0], axis=1)
+                np.testing.assert_allclose(sd.distance((points, faces), 0)[1:], edges, rtol=1e-12)
+                np.testing.assert_allclose(
+                    sd.distance((points, faces), 0, method="Eikonal")[1:], edges, rtol=0.01)
+
+    def test_each_source_counts_for_itself_with_every_method(self):
+        points, faces = grid(24)
+        sources = np.flatnonzero(np.abs(np.hypot(*(points[:, :2] - 0.5).T) - 0.4) < 0.02)
+        exact = np.linalg.norm(points[:, None] - points[sources], axis=2).min(axis=1)
+        for method, worst in (("Exact", 1e-12), ("Eikonal", 0.002)):
+            for given in (sources, np.isin(np.arange(len(points)), sources)):
+                found = sd.nearest_sources((points, faces), given, method=method)
+                self.assertEqual(found.method, method)
+                np.testing.assert_allclose(found.distance, exact, atol=worst)
+                rows = found.source if given.dtype == bool else sources[found.source]
+                np.testing.assert_allclose(
+                    np.linalg.norm(points - points[rows], axis=1), exact, atol=worst)
+
+    def test_automatic_says_which_method_it_took(self):
+        surface = sd.sphere(3)
+        self.assertEqual(sd.nearest_sources(surface, 3).method, "Exact")
+        self.assertEqual(sd.nearest_sources(surface, 3, speed=np.ones(1280)).method, "Eikonal")
+        self.assertEqual(sd.nearest_sources(surface, 3, start=[1.0]).method, "Eikonal")
+        self.assertEqual(sd.nearest_sources(surface, 3, method="heat").method, "Heat")
+
+    def test_sources_outside_do_not_count_and_regions_are_the_opposite_of_masks(self):
+        surface = sd.sphere(3)
+        north = surface.points[:, 2] > 0.0
+        south = int(np.argmin(surface.points[:, 2]))
+        top = int(np.argmax(surface.points[:, 2]))
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
+                                   "^1 sources are on no triangle that takes part and do not count"):
+            found = sd.nearest_sources(surface, [south, top], roi=north)
+        np.testing.assert_array_equal(found.distance, sd.distance(surface, top, mask=~north))
+        self.assertEqual(set(found.source), {-1, 1})
 
     def test_bad_input_names_what_is_allowed(self):
         surface = sd.sphere(1)
@@ -179,16 +245,21 @@ class Distance(unittest.TestCase):
             "sources is 1.5; allowed": dict(sources=1.5),
             "sources has 42; allowed: 0 to 41": dict(sources=[1, 42]),
             "sources has -1; allowed: 0 to 41": dict(sources=-1),
-            "sources has point 3, which no face uses": dict(sources=3, mask=np.arange(42) == 3),
+            "^no source is on the surface: 1 are on no triangle that mask and speeds above 0 leave": dict(
+                sources=3, mask=np.arange(42) == 3),
+            r"sources is array\(\[False.*; allowed: 42 flags, one per point": dict(sources=np.zeros(42, bool)),
+            r"sources is array\(\[ True.*; allowed: 42 flags, one per point": dict(sources=np.ones(41, bool)),
+            "mask and roi are both given": dict(sources=3, mask=np.zeros(42), roi=np.ones(42)),
             "start is .* 2 finite numbers": dict(sources=[1, 2], start=[0.0, np.nan]),
             "start is .* 1 finite numbers": dict(sources=[1], start=[0.0, 1.0]),
-            "speed is -1.0 in row 4; allowed: finite numbers, 0 or more": dict(
+            "speed is -1 at face 4; allowed: finite numbers, 0 or more": dict(
                 sources=1, speed=np.where(np.arange(80) == 4, -1.0, 1.0)),
-            "method is 'Dijkstra'; allowed: Eikonal, Heat": dict(sources=1, method="Dijkstra"),
-            "method is Heat; allowed: Eikonal together with speed": dict(
+            "method is 'Dijkstra'; allowed: Heat, Eikonal, Exact, Automatic": dict(
+                sources=1, method="Dijkstra"),
+            "method is Heat; allowed: Eikonal or Automatic together with speed": dict(
                 sources=1, method="Heat", speed=np.ones(80)),
-            "method is Heat; allowed: Eikonal together with start": dict(
-                sources=1, method="Heat", start=[1.0]),
+            "method is Exact; allowed: Eikonal or Automatic together with start": dict(
+                sources=1, method="exact", start=[1.0]),
             r"speed has shape \(5,\)": dict(sources=1, speed=np.ones(5)),
             r"sources is .*; allowed: finite coordinates, \(k, 3\)": dict(sources=[[0, 0, np.nan]]),
             r"sources is \[\[1\], \[2, 3\]\]; allowed": dict(sources=[[1], [2, 3]]),
@@ -196,16 +267,15 @@ class Distance(unittest.TestCase):
             r"sources\[1\] is .* in row 1; allowed: three": dict(
                 sources=([3, 4], [[1, 0, 0], [0.5, 0.6, 0.1]])),
             r"sources\[1\] has shape \(1, 2\); allowed: \(1, 3\)": dict(sources=([3], [[1, 0]])),
-            "sources has in row 0 a face that is masked": dict(
-                sources=([3], [[1, 0, 0]]), mask=np.arange(80) == 3),
-            "nearest to a face that is masked or a barrier": dict(
+            "^no source is on the surface": dict(sources=([3], [[1, 0, 0]]), mask=np.arange(80) == 3),
+            "^no source is on the surface: 1 are on": dict(
                 sources=surface.points[:1], speed=np.zeros(80)),
             "along_speed is 0; allowed: finite numbers above 0": dict(sources=1, along_speed=0),
-            "along_speed is 2 and across_speed is 1.0 but directions is not set": dict(
+            "along_speed is 2 and across_speed is 1 but directions is not set": dict(
                 sources=1, along_speed=2),
             "directions is infinite in row 0": dict(
                 sources=1, along_speed=2, directions=np.full((42, 3), np.inf)),
-            "method is Heat; allowed: Eikonal together with across_speed": dict(
+            "method is Heat; allowed: Eikonal or Automatic together with along_speed": dict(
                 sources=1, method="Heat", across_speed=2.0),
         }
         for message, keywords in bad.items():
@@ -226,10 +296,10 @@ class Distance(unittest.TestCase):
 class Matrix(unittest.TestCase):
     def test_rows_are_distances_up_to_the_cutoff(self):
         surface = sd.sphere(3, 10.0)
-        found = sd.distances(surface, cutoff=6.0)
+        found = sd.distances(surface, cutoff=6.0, method="Eikonal")
         self.assertEqual((found.shape, found.format), ((642, 642), "csr"))
         for source in (0, 5, 641):
-            expected = sd.distance(surface, source)
+            expected = sd.distance(surface, source, method="Eikonal")
             near = np.flatnonzero(expected <= 6.0)
             row = slice(found.indptr[source], found.indptr[source + 1])
             np.testing.assert_array_equal(found.indices[row], near)
@@ -238,6 +308,20 @@ class Matrix(unittest.TestCase):
         np.testing.assert_array_equal(one.toarray()[0], sd.distance(surface, 7))
         with self.assertRaisesRegex(ValueError, "cutoff is 0; allowed: numbers above 0"):
             sd.distances(surface, [7], cutoff=0)
+        with self.assertRaisesRegex(ValueError, "method is Heat; allowed: other methods than the heat"):
+            sd.distances(surface, [7], method="heat")
+
+    def test_exact_distances_are_symmetric(self):
+        points, faces = grid(6)
+        points = np.concatenate([points * [1.0, 1.0, 0.0] + np.abs(points[:, :1] - 0.5) * [0, 0, 1.0],
+                                 [[9.0, 9.0, 9.0]]])
+        found = sd.distances((points, faces), method="Exact")
+        self.assertEqual(found.shape, (50, 50))
+        self.assertEqual(found.indptr[-1], 49 * 49)  # the row of the point without face is empty
+        matrix = found.toarray()
+        np.testing.assert_allclose(matrix, matrix.T, atol=1e-13)
+        np.testing.assert_array_equal(sd.distances((points, faces), [7, 9], method="Exact").toarray(),
+                                      matrix[[7, 9]])
 
 
 if __name__ == "__main__":

@@ -114,14 +114,20 @@ class Matrices(unittest.TestCase):
         self.assertLess(np.abs(flux[inner]).max(), 1e-12)
         self.assertLess(abs(flux.sum()), 1e-12)
 
-    def test_intrinsic_delaunay_has_no_positive_weights_beside_the_diagonal(self):
+    def test_intrinsic_delaunay_has_no_positive_weights_inside_and_keeps_linear_functions(self):
         points, faces = strip(10, 4, 1.0, 3.0)
         points = points @ np.array([[1.0, 0.0, 0.0], [0.4, 0.3, 0.0], [0.0, 0.0, 1.0]])  # a shear
         plain = sd.stiffness_matrix((points, faces)).toarray()
         flipped = sd.stiffness_matrix((points, faces), intrinsic_delaunay=True).toarray()
-        off = ~np.eye(len(points), dtype=bool)
+        edges = np.sort(np.asarray(faces)[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        unique, count = np.unique(edges, axis=0, return_counts=True)
+        inside = np.ones(len(points), dtype=bool)
+        inside[unique[count == 1].ravel()] = False
+        off = ~np.eye(len(points), dtype=bool) & (inside[:, None] | inside)
         self.assertGreater(plain[off].max(), 0.1)
         self.assertLess(flipped[off].max(), 1e-12)
+        for matrix in (plain, flipped):
+            self.assertLess(np.abs(matrix @ (points @ [1.0, 2.0, 3.0]))[inside].max(), 1e-12)
 
     def test_masked_parts_have_no_entries(self):
         points, faces, _ = irregular()

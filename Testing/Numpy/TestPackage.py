@@ -72,6 +72,13 @@ class Package(unittest.TestCase):
         code = "import sys, surfacediffusion; sys.exit(any('vtk' in name for name in sys.modules))"
         subprocess.run([sys.executable, "-c", code], check=True)
 
+    def test_package_has_the_notices_of_what_is_compiled_into_it(self):
+        texts = {file.name: file.read_text() for file in importlib.metadata.files("surfacediffusion")
+                 if "licenses" in file.parts}
+        self.assertEqual(set(texts), {"LICENSE", "NOTICE"})
+        for text in ("Mozilla Public License, v. 2.0", "gitlab.com/libeigen", "Wenzel Jakob", "Thibaut Goetghebuer"):
+            self.assertIn(text, texts["NOTICE"])
+
     def test_classes_of_vtk_are_an_error_that_says_where_they_are(self):
         if importlib.util.find_spec("vtkSurfaceDiffusion"):
             self.skipTest("vtkSurfaceDiffusion is installed")

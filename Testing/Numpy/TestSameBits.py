@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 
 import numpy as np
 
@@ -67,6 +68,7 @@ class SameBits(unittest.TestCase):
         nan = np.where(self.mask != 0, np.nan, self.values)
         colours = self.random.integers(0, 256, (len(self.points), 4), np.uint8)
         used = np.zeros(len(x), np.uint8)
+        some = np.where(np.arange(len(x)) % 300 == 9, np.arange(len(x)), 0)
         used[np.concatenate([np.asarray(face) for face in self.faces])] = 1
         cases = [
             ("heat", {"values": self.values}, {"FWHM": 0.2}),
@@ -148,6 +150,10 @@ class SameBits(unittest.TestCase):
             ("random_field", {}, {"Covariance": "MaternNu1", "Range": 0.8, "NumberOfFields": 2}),
             ("random_field", {}, {"Covariance": "MaternNu3", "Range": 0.8, "Normalize": False}),
             ("distance", {"marked": (self.values > 1.3) * used}, {"Method": "Heat"}),
+            ("distance", {"marked": (self.values > 1.3) * used * np.arange(len(x))}, {}),
+            ("distance", {"marked": some, "mask": self.mask}, {"Method": "Exact"}),
+            ("distance", {"marked": some, "mask": self.mask}, {"Method": "Eikonal"}),
+            ("distance", {"marked": some, "speed": 1.0 + self.points[:, 2] ** 2}, {}),
             ("distance", {"marked": (np.arange(len(x)) == 70) * used, "mask": self.mask}, {"Method": "Eikonal"}),
             ("distance", {"marked": (np.arange(len(x)) % 400 == 7) * used,
                           "speed": np.where(self.of_faces[:, 0] > 1.5, 0.0, 1.0 + self.of_faces[:, 1] ** 2)},
@@ -253,10 +259,14 @@ class SameBits(unittest.TestCase):
         rows = np.flatnonzero(arrays["marked"])
         given = {key: array for key, array in arrays.items() if key != "marked"}
         given.update({snake_case(name): value for name, value in properties.items()})
-        found = sd.distance(self.surface, rows, **given)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # sources outside do not count
+            found = sd.nearest_sources(self.surface, rows, **given)
+            np.testing.assert_array_equal(sd.distance(self.surface, rows, **given), found.distance)
         has_speed = "speed" in given or "along_speed" in given
-        np.testing.assert_array_equal(expected["ArrivalTime" if has_speed else "Distance"], found)
-        np.testing.assert_array_equal(expected["NearestSource"], np.isfinite(found).astype(np.int32))
+        np.testing.assert_array_equal(expected["ArrivalTime" if has_speed else "Distance"], found.distance)
+        np.testing.assert_array_equal(
+            expected["NearestSource"], np.where(found.source < 0, 0, arrays["marked"][rows][found.source]))
 
     def compare_random_field(self, arrays, properties, expected):
         width = {"range": properties["Range"], "nu": int(properties["Covariance"][-1])} \

@@ -24,6 +24,22 @@ def uneven_sphere():
     return sd.Surface(points, sd.sphere(4).triangles)
 
 
+def cube_of_26_points():
+    """Each side has four squares of two triangles."""
+    faces, numbers = [], {}
+
+    def number(*place):
+        return numbers.setdefault(place, len(numbers))
+
+    for axis in range(3):
+        for side in (0, 2):
+            for i, j in np.ndindex(2, 2):
+                square = [np.insert([i + a, j + b], axis, side) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))]
+                a, b, c, d = (number(*map(int, corner)) for corner in square)
+                faces += [[a, b, c], [a, c, d]] if (side == 2) == (axis != 1) else [[c, b, a], [d, c, a]]
+    return sd.Surface(np.array(list(numbers), float), np.array(faces))
+
+
 def edge_length(surface):
     a, b = surface.triangles[:, 0], surface.triangles[:, 1]
     return np.linalg.norm(surface.points[a] - surface.points[b], axis=1).mean()
@@ -116,6 +132,27 @@ class Estimate(unittest.TestCase):
         masked = sd.estimate_fwhm(surface, np.where(wall[:, None], 7.0, noise), mask=wall)
         self.assertEqual(sd.estimate_fwhm(surface, with_nan).pooled, masked.pooled)
         self.assert_within(masked.pooled, 4 * h, 0.03)
+
+    def test_width_rises_with_that_of_the_noise_and_is_infinite_with_a_warning_above_the_surface(self):
+        cube = cube_of_26_points()
+        noise = np.random.default_rng(3).normal(size=cube.n_points)
+        h = edge_length(cube)
+        modes = np.linspace(0.3, 6.0, 60)
+        found = []
+        for width in modes:
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always")
+                found.append(sd.estimate_fwhm(cube, sd.heat(
+                    cube, noise, time_step=(width * h) ** 2 / (16 * np.log(2)), units="Absolute",
+                    time_integrator="Exponential", number_of_time_steps=1)).pooled)
+            self.assertEqual(np.isinf(found[-1]), any("as smooth as the surface" in str(w.message) for w in said))
+        self.assertTrue((np.diff([f for f in found if np.isfinite(f)]) > 0).all())
+        self.assertTrue(np.isinf(found[-1]))
+        self.assertTrue((np.diff(np.isinf(found).astype(int)) >= 0).all())
+        widest = max(f for f in found if np.isfinite(f))
+        for asked in (0.5 * widest, 0.9 * widest):
+            smooth = sd.smooth_to_fwhm(cube, noise, asked)
+            self.assertLess(abs(sd.estimate_fwhm(cube, smooth).pooled / asked - 1), 0.006)
 
     def test_white_noise_has_a_width_below_an_edge_and_a_constant_an_infinite_one(self):
         surface = even_sphere()

@@ -35,7 +35,7 @@ if [ "$size" -gt 2000000 ]; then
 fi
 tar -xzf dist/*.tar.gz -C source --strip-components 1
 for path in CMake Filters/Core Filters/Run Python/Extension Python/surfacediffusion \
-  Python/CMakeLists.txt Python/make_stubs.py CMakeLists.txt pyproject.toml README.md LICENSE; do
+  Python/CMakeLists.txt Python/make_stubs.py CMakeLists.txt pyproject.toml README.md LICENSE NOTICE; do
   diff -r --exclude=__pycache__ "$source/$path" "source/$path"
 done
 environment/bin/pip wheel --quiet --no-deps --wheel-dir dist \

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """What run-tests.sh and run-checks.sh rely on. Argument: the folder of the sources."""
+import json
 import os
 import re
 import subprocess
@@ -21,16 +22,19 @@ def case(name, output, skipped=""):
 
 class Skips(unittest.TestCase):
 
-    def check(self, cases, rules="", needed=""):
-        """The exit code and the output of check_skips.py."""
+    def check(self, cases, rules="", needed="", labels=()):
+        """The exit code and the output of check_skips.py. labels: pairs of a test and its label."""
         with tempfile.TemporaryDirectory() as folder:
             results, allowed = Path(folder, "tests.xml"), Path(folder, "allowed.txt")
+            listed = Path(folder, "tests.json")
+            listed.write_text(json.dumps({"tests": [
+                {"name": name, "properties": [{"name": "LABELS", "value": [label]}]} for name, label in labels]}))
             results.write_text(f"<testsuite>{''.join(cases)}</testsuite>")
             allowed.write_text("# reasons\n\n" + rules)
             must_run = Path(folder, "needed.txt")
             must_run.write_text("# names\n" + needed)
-            run = subprocess.run([sys.executable, TESTING / "check_skips.py", results, allowed, must_run],
-                                 capture_output=True, text=True)
+            run = subprocess.run([sys.executable, TESTING / "check_skips.py", results, listed, allowed,
+                                  must_run], capture_output=True, text=True)
         return run.returncode, run.stdout
 
     def test_a_run_without_skips_passes_in_silence(self):
@@ -53,6 +57,19 @@ class Skips(unittest.TestCase):
         self.assertEqual(self.check(cases, needed="Plugin\\.Toolbar\nParallel\\..*\n"), (0, ""))
         code, text = self.check(cases, needed="Plugin\\.Tool\nParallel\\..*\n")
         self.assertEqual((code, text.splitlines()[0]), (1, "not run: Plugin\\.Tool"))
+
+    def test_a_label_with_fewer_tests_is_found(self):
+        cases = [case(name, "OK") for name in ("A", "B", "C")]
+        labels = [("A", "core"), ("B", "core"), ("C", "vtk"), ("NotRun", "core")]
+        self.assertEqual(self.check(cases, needed="core: 2 tests\n", labels=labels), (0, ""))
+        code, text = self.check(cases, needed="core: 3 tests\nmpi: 1 tests\n", labels=labels)
+        self.assertEqual((code, text.splitlines()[:2]),
+                         (1, ["not run: core: 3 tests, only 2", "not run: mpi: 1 tests, only 0"]))
+
+    def test_every_label_must_run(self):
+        rules = dict(re.findall(r"^(\w+): (\d+) tests$", (TESTING / "must_run.txt").read_text(), re.M))
+        table = re.findall(r"^\| `([a-z]+)` \|", (SOURCE / "CONTRIBUTING.md").read_text(), re.M)
+        self.assertEqual(set(rules), set(table) - {"versions"})
 
     def test_only_the_listed_reason_is_allowed(self):
         cases = [case("Command.A", "test_a (T) ... skipped 'root may write'\n\nOK (skipped=1)")]
@@ -84,6 +101,18 @@ class TestData(unittest.TestCase):
             self.assertNotEqual(run.returncode, 0)
             self.assertIn("there is no file", run.stderr)
             self.assertIn("/numpy/", run.stderr)
+
+
+class Host(unittest.TestCase):
+
+    def test_an_unknown_host_is_an_error_that_names_the_allowed_ones(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for host in ("Foo", "paraview", "None;VTK"):
+                run = subprocess.run(["cmake", "-S", SOURCE, "-B", folder, f"-DSURFACEDIFFUSION_HOST={host}"],
+                                     capture_output=True, text=True)
+                self.assertNotEqual(run.returncode, 0, host)
+                self.assertIn(f"SURFACEDIFFUSION_HOST is {host}; allowed: ParaView, VTK, None",
+                              " ".join(run.stderr.split()))
 
 
 class Checks(unittest.TestCase):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks the recipes of Packaging: they can be read, name this version, and pass CMake options that
+"""Checks the recipe of Packaging: it can be read, names this version, and passes CMake options that
 exist and with which the sources configure. Wheels for PyPI's vtk pin its version.
 
     recipes.py SOURCE FOLDER CMAKE VTK_DIR
@@ -15,8 +15,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import types
-from contextlib import contextmanager
 from pathlib import Path
 
 source, folder, cmake, vtk_dir = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3], sys.argv[4]
@@ -45,50 +43,9 @@ def conda_options(sources):
     recipe = yaml.safe_load((sources / "Packaging/conda-forge/recipe.yaml").read_text())
     version = re.search(r"VERSION (\S+)", (sources / "CMakeLists.txt").read_text().split("project(")[1])
     assert recipe["context"]["version"] == version.group(1), recipe["context"]
-    assert (sources / recipe["about"]["license_file"]).exists()
+    assert all((sources / name).exists() for name in recipe["about"]["license_file"])
     command = recipe["build"]["script"][0]
     return dict(re.findall(r"-D (\w+)=(\S+)", command))
-
-
-def spack_options(sources):
-    """The CMake options of the recipe for Spack with each host."""
-    spack = types.ModuleType("spack.package")
-
-    class CMakePackage:
-        def __init__(self, **variants):
-            self.values = variants
-            self.spec = types.SimpleNamespace(variants={
-                name: types.SimpleNamespace(value=value) for name, value in variants.items()})
-
-        def define(self, name, value):
-            return "-D%s=%s" % (name, value if isinstance(value, str) else "ON" if value else "OFF")
-
-        def define_from_variant(self, name, variant):
-            assert variant in variants, variant
-            return self.define(name, self.values[variant])
-
-    variants, versions = {}, []
-    spack.CMakePackage = CMakePackage
-    spack.variant = lambda name, **arguments: variants.update({name: arguments["default"]})
-    spack.version = lambda name, **_: versions.append(name)
-    for name in ("license", "depends_on", "conflicts", "extends", "generator"):
-        setattr(spack, name, lambda *_, **__: None)
-
-    @contextmanager
-    def when(_):
-        yield
-
-    spack.when = when
-    sys.modules["spack"] = types.ModuleType("spack")
-    sys.modules["spack.package"] = spack
-    path = sources / "Packaging/spack/packages/surfacediffusion/package.py"
-    names = {"__file__": str(path)}
-    exec(compile(path.read_text(), str(path), "exec"), names)
-    assert versions == ["main"] and variants["host"] == "vtk", (versions, variants)
-    return [
-        dict(re.findall(r"-D(\w+)=(\S+)", " ".join(names["Surfacediffusion"](**chosen).cmake_args())))
-        for chosen in ({**variants}, {**variants, "host": "none", "python": False})
-    ]
 
 
 def configure(sources, name, options):
@@ -173,6 +130,4 @@ load_build_backend()
 check_dependencies()
 check_page()
 configure(source, "conda", conda_options(source))
-for i, options in enumerate(spack_options(source)):
-    configure(source, "spack%d" % i, options)
 print("the recipes can be read, and their options configure")

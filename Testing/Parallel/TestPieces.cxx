@@ -7,10 +7,14 @@
 #include "vtkTuringTextureFilter.h"
 
 #include "vtkCellData.h"
+#include "vtkExecutive.h"
 #include "vtkMPIController.h"
 #include "vtkMultiBlockDataSet.h"
 
 #include <gtest/gtest.h>
+
+#include <functional>
+#include <utility>
 
 using namespace Pieces;
 
@@ -304,6 +308,90 @@ TEST(Pieces, WithoutTheArrayAreOneError)
   heat->Update();
   EXPECT_EQ(messages.Errors.size(), Rank() == 0 ? 1u : 0u);
   EXPECT_EQ(Result(heat), nullptr);
+}
+
+TEST(Pieces, WithDifferentArraysAreOneErrorOfAllProcesses)
+{
+  using Change = std::function<void(vtkPolyData*)>;
+  const auto value = [](vtkIdType i, int k) { return 1.0 + Rough(i, k); };
+  const std::vector<std::pair<const char*, Change>> changes = {
+    { "3 components", [&](vtkPolyData* piece) { AddPointArray(piece, "f", 3, value); } },
+    { "unsigned char",
+      [&](vtkPolyData* piece) { AddPointArray(piece, "f", 1, value, VTK_UNSIGNED_CHAR); } },
+    { "on cells",
+      [&](vtkPolyData* piece)
+      {
+        piece->GetPointData()->RemoveArray("f");
+        piece->GetCellData()->SetScalars(
+          MakeArray(VTK_DOUBLE, "f", piece->GetNumberOfCells(), 1, value));
+      } },
+    { "\"g\"",
+      [&](vtkPolyData* piece)
+      {
+        AddPointArray(piece, "g", 1, value);
+        piece->GetPointData()->SetActiveScalars("g");
+      } },
+  };
+  for (const auto& [words, change] : changes)
+  {
+    for (const bool gathered : { false, true })
+    {
+      const auto mine = Mine(24);
+      mine->GetPointData()->SetActiveScalars("f");
+      if (Rank() == Count() - 1)
+      {
+        change(mine);
+      }
+      vtkNew<vtkFVMHeatFilter> heat; // of the active scalars
+      heat->SetInputData(mine);
+      gathered ? heat->SetSolverToDirect() : heat->SetSolverToConjugateGradient();
+      Messages messages(heat);
+      const int succeeded = heat->GetExecutive()->Update();
+      if (Count() == 1)
+      {
+        EXPECT_EQ(succeeded, 1);
+        continue;
+      }
+      EXPECT_EQ(succeeded, 0) << words << gathered;
+      EXPECT_EQ(Result(heat), nullptr) << words << gathered;
+      ASSERT_EQ(messages.Errors.size(), Rank() == 0 ? 1u : 0u) << words << gathered;
+      if (Rank() == 0)
+      {
+        const std::string& error = messages.Errors[0];
+        EXPECT_NE(error.find("the pieces of the input have different arrays, \"f\" (double, 1 "
+                             "component, on points) and "),
+          std::string::npos)
+          << error;
+        EXPECT_NE(error.find(words), std::string::npos) << error;
+      }
+    }
+  }
+}
+
+TEST(Pieces, OfPointsWithDifferentValuesAreOneErrorOfAllProcesses)
+{
+  const auto makePoints = [](int components, const char* name)
+  {
+    auto points = vtkSmartPointer<vtkPolyData>::New();
+    points->DeepCopy(Mine(3));
+    points->SetPolys(nullptr);
+    points->GetPointData()->Initialize();
+    AddPointArray(points, name, components, [](vtkIdType i, int k) { return Rough(i, k); });
+    return points;
+  };
+  for (const auto& [components, name] :
+    { std::pair<int, const char*>(3, "t"), std::pair<int, const char*>(1, "absent elsewhere") })
+  {
+    const bool isOther = Count() > 1 && Rank() == Count() - 1;
+    vtkNew<vtkSurfaceInterpolationFilter> spline;
+    spline->SetInputData(Mine(24));
+    spline->SetInputData(1, isOther ? makePoints(components, name) : makePoints(1, "t"));
+    spline->SetPointValueArray("t");
+    Messages messages(spline);
+    const int succeeded = spline->GetExecutive()->Update();
+    EXPECT_EQ(succeeded, Count() > 1 ? 0 : 1) << name;
+    EXPECT_EQ(messages.Errors.size(), Count() > 1 && Rank() == 0 ? 1u : 0u) << name;
+  }
 }
 
 TEST(Pieces, HaveTheMeasuredValuesOfTheWholeSurfaceWhereTheyAreRefined)

@@ -10,12 +10,13 @@ from paraview import make_name_valid, smtrace
 from paraview.simple import (
     AssignViewToLayout, ColorBy, CreateView, Delete, FindSource, GetActiveSource, GetActiveView,
     GetAnimationScene, GetColorTransferFunction, GetDisplayProperties, GetLayout, GetSources,
-    GetViews, Hide, SetActiveSource, SetActiveView, Show,
+    GetViews, Hide, Render, SetActiveSource, SetActiveView, Show,
 )
 from plugin_testing import (
     PICTURE_TOLERANCE, assert_looks_like, assert_looks_unlike, differences, filter_names,
     picture_error, results,
 )
+from vtkmodules.vtkCommonCore import vtkLogger
 
 # The array that colours the test's picture of a filter, the root mean square of its first component,
 # and the array that the first Apply selects.
@@ -34,7 +35,7 @@ RESULTS = {
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.707249, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
-    "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "u1")),
+    "TuringTextureFilter": (("POINTS", "Texture"), 0.464696, ("POINTS", "Texture")),
 }
 TOLERANCE = 1e-4  # of these numbers, relative
 
@@ -224,6 +225,39 @@ def check_chart():
     assert (lines.UseIndexForXAxis, lines.XArrayName) == (0, "Time"), lines.XArrayName
     assert "Energy" in lines.SeriesVisibility, lines.SeriesVisibility
     say("as expected: chart")
+
+
+LOG = os.path.join(os.environ["SURFACEDIFFUSION_OUTPUT_DIR"], "errors.log")
+executions = []
+
+
+def refuse():
+    """Gives the active source, which has not been applied yet, a setting that it refuses. From now on
+    errors are logged."""
+    source = GetActiveSource()
+    source.NumberOfThreads = -1
+    vtkLogger.LogToFile(LOG, vtkLogger.TRUNCATE, vtkLogger.VERBOSITY_ERROR)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # where the test's driver takes it for a failure
+    source.SMProxy.GetClientSideObject().AddObserver(
+        "StartEvent", lambda *_: executions.append(1))
+
+
+def check_refusal():
+    """Checks that the refused Apply gave one message of one line, and that the input is shown."""
+    display = GetDisplayProperties(GetActiveSource(), render_view())
+    Render(render_view())
+    shown = display.GetClientSideObject().GetRenderedDataObject(0)
+    points = FindSource("Data").GetDataInformation().GetNumberOfPoints()
+    found = shown.GetNumberOfPoints() if shown else 0
+    vtkLogger.EndLogToFile(LOG)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_INFO)
+    with open(LOG) as file:
+        lines = file.read().split("ERR|", 1)[-1].strip().splitlines()
+    say("refused: %d executions, %d lines, %d of %d points" % (len(executions), len(lines), found, points))
+    assert len(executions) == len(lines) == 1, lines
+    assert "NumberOfThreads is -1" in lines[0], lines
+    assert display.Visibility and found == points
+    say("as expected: refusal")
 
 
 def check_selected_denoised():

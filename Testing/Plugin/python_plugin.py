@@ -61,8 +61,7 @@ def make(name, source, **properties):
         lines = [line for line in text.strip().splitlines() if not line.startswith("ERROR: In /")
                  and not line.startswith("Warning: In /")]
         message = (event, " ".join(lines).partition("): ")[2].strip())
-        if message not in messages[-1:]:  # one request may update a filter twice
-            messages.append(message)
+        messages.append(message)
 
     remember.CallDataType = "string0"
     for event in ("ErrorEvent", "WarningEvent"):
@@ -280,7 +279,7 @@ def run_kinds_of_input():
     points = producer(scattered())
     run("SurfaceInterpolationFilter", sphere_with_arrays(), "samples", PointsWithValues=points,
         ComputeError=1)
-    for method in ("Heat", "Eikonal"):
+    for method in ("Heat", "Eikonal", "Exact"):
         run("SurfaceDistanceFilter", sphere_with_arrays(), "sources" + method, Sources=points, Method=method,
             ComputeGradient=1)
     run("HarmonicMapFilter", noisy(sphere_with_arrays()), "moved", MoveVertices=1)
@@ -461,6 +460,9 @@ def run_times():
             put("times/%s/%d/all" % (name, number), times)
             made.UpdatePipeline(times[-1] * at / 6.0)
             describe(made, "times/%s/%d" % (name, number))
+        made.NumberOfThreads = -1
+        for time in (1.0, 0.0):
+            made.UpdatePipeline(time)
         put("times/%s/messages" % name, messages)
 
 

@@ -124,7 +124,7 @@ DEFAULTS = {
     "vtkSurfaceDerivativesFilter": {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
     "vtkSurfaceDistanceFilter": {
-        **SURFACE, "Method": "Heat", "MaximumDistance": 0.0, "AlongSpeed": 1.0, "AcrossSpeed": 1.0,
+        **SURFACE, "Method": "Automatic", "MaximumDistance": 0.0, "AlongSpeed": 1.0, "AcrossSpeed": 1.0,
         "ComputeGradient": False},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
@@ -152,7 +152,7 @@ WORDS = {
     "TextureChemical": ("U1", "U2"), "SurfaceType": ("Automatic", "CAD", "Organic"),
     "Levels": ("Smooth", "Two"),
     "Method": ("PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints"),
-    "vtkSurfaceDistanceFilter Method": ("Heat", "Eikonal"),
+    "vtkSurfaceDistanceFilter Method": ("Heat", "Eikonal", "Exact", "Automatic"),
     "PrincipalDirection": ("Minimum", "Maximum"), "Boundary": ("Natural", "Free"),
 }
 

@@ -429,7 +429,14 @@ inline std::vector<FilterKind> AllFilters()
     MakeKind<vtkSurfaceDistanceFilter>("DistanceHeat", "Distance", 0,
       [](vtkSurfaceDistanceFilter* f)
       {
+        f->SetMethodToHeat();
         f->ComputeGradientOn();
+        SetInputArray(f, 0, "sources");
+      }),
+    MakeKind<vtkSurfaceDistanceFilter>("DistanceExact", "Distance", 0,
+      [](vtkSurfaceDistanceFilter* f)
+      {
+        f->SetMethodToExact();
         SetInputArray(f, 0, "sources");
       }),
     MakeKind<vtkSurfaceDistanceFilter>("DistanceEikonal", "Distance", 0,

@@ -490,7 +490,7 @@ inline std::string ExpectPromises(
   }
   if (auto* distance = vtkSurfaceDistanceFilter::SafeDownCast(filter))
   {
-    const bool isMarched = distance->GetMethod() == vtkSurfaceDistanceFilter::METHOD_EIKONAL;
+    const bool isMarched = distance->GetMethod() != vtkSurfaceDistanceFilter::METHOD_HEAT;
     return ExpectDistances(input, filter->GetOutput(), u, isMarched);
   }
   if (field)

@@ -464,9 +464,9 @@ inline List OfDistance()
 {
   using F = vtkSurfaceDistanceFilter;
   return {
-    RANDOM_PROPERTY(F, Method, Choice(dice, 2)),
+    RANDOM_PROPERTY(F, Method, Choice(dice, 4)),
     RANDOM_PROPERTY(F, MaximumDistance, ZeroOrPositive(dice)),
-    // Most runs have neither directions nor Eikonal, which other speeds need.
+    // Most runs have neither directions nor a method for them, which other speeds need.
     RANDOM_PROPERTY(F, AlongSpeed, dice.Flip(6) ? Positive(dice) : 1.0),
     RANDOM_PROPERTY(F, AcrossSpeed, dice.Flip(6) ? Positive(dice) : 1.0),
     RANDOM_PROPERTY(F, ComputeGradient, dice.Flip()),

@@ -235,7 +235,7 @@ TEST_P(EveryMesh, HasATextureGrown)
 
 TEST_P(EveryMesh, HasDistancesMeasured)
 {
-  for (const int method : { 0, 1 })
+  for (const int method : { 0, 1, 3 })
   {
     vtkNew<vtkSurfaceDistanceFilter> distance;
     distance->SetMethod(method);

@@ -17,6 +17,10 @@ namespace
 
 constexpr double Never = std::numeric_limits<double>::infinity();
 
+/// The angle above 2 pi from which on a vertex is a saddle, in radians. On fine surfaces, whose angles
+/// differ less, ways along edges are mostly those of the triangulation.
+constexpr double SmallestSaddle = 0.5;
+
 /// What a time has to fall by, relatively, so that the front starts again: more than round-off. Where the
 /// lengths of an edge differ much between its two triangles, times may fall by less and less without an
 /// end; after UsualFalls, what counts doubles with each.
@@ -40,12 +44,17 @@ struct LaidOut
   }
 
   /// The distance of C from a point below AB at distances da from A and db from B, or infinity if
-  /// its straight line does not cross AB.
+  /// its straight line does not cross AB, or there is none.
   double FromPoint(double da, double db) const
   {
     const double x = (da * da - db * db + this->Edge * this->Edge) / (2.0 * this->Edge);
     const double square = da * da - x * x;
-    const double y = square > 0.0 ? std::sqrt(square) : 0.0;
+    constexpr double roundOff = 1e-9;
+    if (square < -roundOff * this->Edge * this->Edge)
+    {
+      return Never; // no point has these distances
+    }
+    const double y = std::sqrt(std::max(0.0, square));
     const double crossing = x * this->Y + this->X * y; // of AB, times Y + y
     const bool crosses = crossing >= 0.0 && crossing <= this->Edge * (this->Y + y);
     return crosses && this->Y > 0.0 ? std::hypot(this->X - x, this->Y + y) : Never;
@@ -75,7 +84,7 @@ GeodesicDistance::GeodesicDistance(std::shared_ptr<const TriangleMesh> mesh, Fro
   this->FindCorners();
 }
 
-/// The vertices of boundaries and barriers with an open angle above pi.
+/// The vertices of boundaries and barriers with an open angle above pi, and others with one above 2 pi.
 void GeodesicDistance::FindCorners()
 {
   const TriangleMesh& mesh = *this->Mesh;
@@ -102,10 +111,49 @@ void GeodesicDistance::FindCorners()
     }
   }
   const double straight = std::acos(-1.0) * (1.0 + 1e-6);
+  const double saddle = 2.0 * std::acos(-1.0) + SmallestSaddle;
   this->IsCorner.resize(n);
   for (std::size_t i = 0; i < n; ++i)
   {
-    this->IsCorner[i] = isOnRim[i] != 0 && angles[i] > straight;
+    this->IsCorner[i] = angles[i] > (isOnRim[i] != 0 ? straight : saddle);
+  }
+  this->FindGates(isOnRim);
+}
+
+/// Sides without another open triangle, and all sides of triangles that have a vertex twice: times at
+/// two places of one vertex say nothing of the way between them.
+void GeodesicDistance::FindGates(const std::vector<char>& isOnRim)
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const Triangles& edges = mesh.TriangleEdges();
+  const Index sides = 3 * mesh.NumberOfTriangles();
+  std::vector<char> uses(edges.rows() > 0 ? static_cast<std::size_t>(sides) : 0, 0);
+  for (Index side = 0; edges.rows() > 0 && side < sides; ++side)
+  {
+    char& known = uses[static_cast<std::size_t>(edges.data()[side])];
+    known = static_cast<char>(std::min(2, known + (IsBarrier(this->Shapes, side / 3) ? 0 : 1)));
+  }
+  this->IsClosed.assign(static_cast<std::size_t>(sides), 0);
+  for (Index side = 0; side < sides; ++side)
+  {
+    const Index i = mesh.OtherCorner(side, 1);
+    const Index j = mesh.OtherCorner(side, 2);
+    bool isOpen = edges.rows() == 0 || uses[static_cast<std::size_t>(edges.data()[side])] > 1;
+    if (edges.rows() == 0 && isOnRim[static_cast<std::size_t>(i)] != 0 &&
+      isOnRim[static_cast<std::size_t>(j)] != 0)
+    {
+      const auto begin = mesh.VertexCorners().begin();
+      isOpen = std::any_of(begin + mesh.VertexCornersBegin()[static_cast<std::size_t>(i)],
+        begin + mesh.VertexCornersBegin()[static_cast<std::size_t>(i) + 1],
+        [&](Index corner)
+        {
+          return corner / 3 != side / 3 && !IsBarrier(this->Shapes, corner / 3) &&
+            (mesh.OtherCorner(corner, 1) == j || mesh.OtherCorner(corner, 2) == j);
+        });
+    }
+    const Index opposite = mesh.TriangleVertices().data()[side];
+    const bool isLoop = i == j || i == opposite || j == opposite;
+    this->IsClosed[static_cast<std::size_t>(side)] = isLoop ? 2 : (isOpen ? 0 : 1);
   }
 }
 
@@ -143,36 +191,85 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
   {
     return way;
   }
-  const LaidOut triangle(shape.EdgeLength(a), toSecond, toThird);
   // A vertex that a front starts from, a source or a corner, is a point of it.
   const auto startsAt = [](const FrontSource& front, Index vertex)
   { return front.Vertex == vertex && front.Time == front.Start; };
-  const bool isOnePoint =
-    one.Point == other.Point || startsAt(one, third) || startsAt(other, second);
-  const FrontSource& point = startsAt(other, second) ? other : one;
-  const double start = isOnePoint ? point.Start : std::min(ofSecond, ofThird);
+  const bool areTwoPoints = one.Point >= 0 && other.Point >= 0 && one.Point != other.Point;
+  const char isClosed = this->IsClosed[static_cast<std::size_t>(corner)];
+  const bool isSource = areTwoPoints && startsAt(one, second) && startsAt(other, third);
+  if (isClosed == 2 || (isClosed == 1 && !isSource))
+  {
+    return way;
+  }
+  const LaidOut triangle(shape.EdgeLength(a), toSecond, toThird);
+  const bool isPlane = areTwoPoints && !startsAt(one, third) && !startsAt(other, second);
+  // Of a way around a corner and another one, the point where both begin
+  const bool isOther =
+    startsAt(other, second) || (!startsAt(one, third) && other.Start < one.Start);
+  const double start = isPlane ? std::min(ofSecond, ofThird) : (isOther ? other : one).Start;
   const double da = ofSecond - start;
   const double db = ofThird - start;
   const double through =
-    start + (isOnePoint ? triangle.FromPoint(da, db) : triangle.FromPlane(da, db));
+    start + (isPlane ? triangle.FromPlane(da, db) : triangle.FromPoint(da, db));
   return through < way.Time ? Way{ through, ofSecond < ofThird ? bySecond : byThird, -1 } : way;
+}
+
+GeodesicDistance::Memory::Memory(Index vertices)
+  : Found{ std::vector<double>(static_cast<std::size_t>(vertices), Never),
+    std::vector<Index>(static_cast<std::size_t>(vertices), -1) }
+  , Falls(static_cast<std::size_t>(vertices), 0)
+{
+}
+
+void GeodesicDistance::Memory::Clear(const std::vector<Index>& vertices)
+{
+  for (const Index vertex : vertices)
+  {
+    const auto v = static_cast<std::size_t>(vertex);
+    this->Found.Times[v] = Never;
+    this->Found.Sources[v] = -1;
+    this->Falls[v] = 0;
+  }
 }
 
 GeodesicDistance::Arrival GeodesicDistance::Find(
   const std::vector<FrontSource>& sources, double cutoff, const ProgressMonitor& progress) const
 {
-  const auto n = static_cast<std::size_t>(this->Mesh->NumberOfVertices());
-  Arrival arrival{ std::vector<double>(n, Never), std::vector<Index>(n, -1) };
-  this->March(sources, cutoff, {}, arrival, nullptr, progress);
-  return arrival;
+  Memory memory(this->Mesh->NumberOfVertices());
+  this->FindNear(sources, cutoff, {}, memory, progress);
+  return std::move(memory.Found);
 }
 
-std::vector<Index> GeodesicDistance::FindNear(
-  const FrontSource& source, double cutoff, Arrival& arrival) const
+/// The least at each vertex.
+std::vector<double> GeodesicDistance::TimesOfSources(const std::vector<FrontSource>& sources) const
 {
-  std::vector<Index> reached;
-  this->March({ source }, cutoff, {}, arrival, &reached, ProgressMonitor());
-  return reached;
+  std::vector<double> times(static_cast<std::size_t>(this->Mesh->NumberOfVertices()), Never);
+  for (const FrontSource& source : sources)
+  {
+    double& time = times[static_cast<std::size_t>(source.Vertex)];
+    time = std::min(time, source.Time);
+  }
+  return times;
+}
+
+/// Whether no way from a vertex is the first one, since fronts start all around it as early.
+bool GeodesicDistance::IsAmongSources(
+  const FrontSource& source, const std::vector<double>& times) const
+{
+  const auto v = static_cast<std::size_t>(source.Vertex);
+  const TriangleMesh& mesh = *this->Mesh;
+  for (Index k = mesh.VertexCornersBegin()[v]; k < mesh.VertexCornersBegin()[v + 1]; ++k)
+  {
+    for (const int step : { 1, 2 })
+    {
+      const Index other = mesh.OtherCorner(mesh.VertexCorners()[static_cast<std::size_t>(k)], step);
+      if (!(times[static_cast<std::size_t>(other)] <= source.Time))
+      {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 GeodesicDistance::Arrival GeodesicDistance::FindNearest(
@@ -194,9 +291,9 @@ GeodesicDistance::Arrival GeodesicDistance::FindNearest(
   {
     latest[i] = nearest.Times[i] + edges * latest[i];
   }
-  Arrival alone{ std::vector<double>(latest.size(), Never), std::vector<Index>(latest.size(), -1) };
-  nearest = alone;
-  std::vector<Index> touched;
+  const std::vector<double> starts = this->TimesOfSources(sources);
+  Memory alone(this->Mesh->NumberOfVertices());
+  nearest = alone.Found;
   double done = 0.0;
   for (const auto& [label, rows] : labels)
   {
@@ -205,22 +302,21 @@ GeodesicDistance::Arrival GeodesicDistance::FindNearest(
     {
       ofLabel.push_back(sources[static_cast<std::size_t>(k)]);
     }
-    this->March(ofLabel, Never, latest, alone, &touched, ProgressMonitor());
+    const bool isInside = ofLabel.size() == 1 && this->IsAmongSources(ofLabel[0], starts);
+    const std::vector<Index> touched =
+      this->FindNear(ofLabel, isInside ? ofLabel[0].Time : Never, latest, alone);
     for (const Index vertex : touched)
     {
       const auto v = static_cast<std::size_t>(vertex);
-      const Index source =
-        alone.Sources[v] < 0 ? -1 : rows[static_cast<std::size_t>(alone.Sources[v])];
-      if (alone.Times[v] < nearest.Times[v] ||
-        (alone.Times[v] == nearest.Times[v] && source >= 0 && source < nearest.Sources[v]))
+      const Index row = rows[static_cast<std::size_t>(alone.Found.Sources[v])];
+      if (alone.Found.Times[v] < nearest.Times[v] ||
+        (alone.Found.Times[v] == nearest.Times[v] && row < nearest.Sources[v]))
       {
-        nearest.Times[v] = alone.Times[v];
-        nearest.Sources[v] = source;
+        nearest.Times[v] = alone.Found.Times[v];
+        nearest.Sources[v] = row;
       }
-      alone.Times[v] = Never;
-      alone.Sources[v] = -1;
     }
-    touched.clear();
+    alone.Clear(touched);
     progress.Report(0.5 + 0.5 * ++done / static_cast<double>(labels.size()));
   }
   return nearest;
@@ -248,14 +344,14 @@ std::vector<double> GeodesicDistance::LongestEdges() const
   return longest;
 }
 
-void GeodesicDistance::March(const std::vector<FrontSource>& sources, double cutoff,
-  const std::vector<double>& latest, Arrival& arrival, std::vector<Index>* touched,
+std::vector<Index> GeodesicDistance::FindNear(const std::vector<FrontSource>& sources,
+  double cutoff, const std::vector<double>& latest, Memory& memory,
   const ProgressMonitor& progress) const
 {
+  Arrival& arrival = memory.Found;
   const TriangleMesh& mesh = *this->Mesh;
   const auto n = static_cast<std::size_t>(mesh.NumberOfVertices());
   std::vector<Index> reached;
-  std::vector<int> falls(n, 0); // of the time of each vertex
   const auto limitAt = [&](std::size_t v)
   { return latest.empty() ? cutoff : std::min(cutoff, latest[v]); };
   // The sources, and the corners that ways go around with the numbers of their sources
@@ -301,7 +397,7 @@ void GeodesicDistance::March(const std::vector<FrontSource>& sources, double cut
         Way way = this->WayThrough(at, fronts, arrival);
         double& known = arrival.Times[static_cast<std::size_t>(neighbour)];
         const double limit = limitAt(static_cast<std::size_t>(neighbour));
-        int& fallsHere = falls[static_cast<std::size_t>(neighbour)];
+        int& fallsHere = memory.Falls[static_cast<std::size_t>(neighbour)];
         if (!(way.Time < Never && way.Time <= limit) ||
           !(known == Never || way.Time < known - SmallestFall(fallsHere) * std::abs(known)))
         {
@@ -337,10 +433,7 @@ void GeodesicDistance::March(const std::vector<FrontSource>& sources, double cut
     Index& source = arrival.Sources[static_cast<std::size_t>(vertex)];
     source = sourceOf[static_cast<std::size_t>(source)];
   }
-  if (touched)
-  {
-    *touched = std::move(reached);
-  }
+  return reached;
 }
 
 } // namespace SurfaceDiffusion

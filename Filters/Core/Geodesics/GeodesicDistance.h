@@ -27,9 +27,9 @@ struct FrontSource
 /// the plane. If its other two vertices are reached from one source point, the place of this point
 /// in the plane follows from their times, and the third time from the length of the straight line
 /// from there (M. Novotni, R. Klein, WSCG 2002): in a plane such distances are exact, and on curved
-/// surfaces a front keeps its curvature. If they are reached from different points, as beside a line
-/// of sources, the front is plane. In both cases the way has to cross the edge between them; others
-/// go along an edge.
+/// surfaces a front keeps its curvature. If they are reached from different points of one source, as
+/// beside a line, the front is plane. In both cases the way has to cross the edge between them, and
+/// another triangle has to be behind it, unless the source is on it; others go along an edge.
 ///
 /// Each time is the length of a path over triangles laid out side by side. A vertex whose time
 /// decreases later is visited again, and obtuse triangles, which speeds that differ between
@@ -41,8 +41,11 @@ struct FrontSource
 /// and the surface, are the same.
 ///
 /// No way crosses a barrier, but ways along an edge that another triangle shares go by. Ways around
-/// a corner of a boundary or a barrier, where the open angle is above pi, go on from there as from a
-/// source. Fronts of different labels do not mix.
+/// a corner of a boundary or a barrier, where the open angle is above pi, and around a saddle, a
+/// vertex with an angle above 2 pi, go on from there as from a source. Fronts of different labels do
+/// not mix.
+///
+/// Distances are right where triangles are small beside the surface: see EikonalDistance for others.
 class GeodesicDistance
 {
 public:
@@ -62,9 +65,21 @@ public:
   Arrival Find(const std::vector<FrontSource>& sources, double cutoff,
     const ProgressMonitor& progress = ProgressMonitor()) const;
 
-  /// The same from a source that reaches few vertices, which are returned in ascending order. arrival:
-  /// of all vertices, at first infinite and -1.
-  std::vector<Index> FindNear(const FrontSource& source, double cutoff, Arrival& arrival) const;
+  /// The arrivals of one call after another at all vertices of a mesh: infinite and -1 before each.
+  struct Memory
+  {
+    explicit Memory(Index vertices);
+    void Clear(const std::vector<Index>& vertices);
+
+    Arrival Found;
+    std::vector<int> Falls; ///< of each time
+  };
+
+  /// The same from sources that reach few vertices, which are returned in ascending order. latest: per
+  /// vertex, the time from which on fronts end there; empty: cutoff alone.
+  std::vector<Index> FindNear(const std::vector<FrontSource>& sources, double cutoff,
+    const std::vector<double>& latest, Memory& memory,
+    const ProgressMonitor& progress = ProgressMonitor()) const;
 
   /// The same, with the label that arrives first, and its time, exactly as if the fronts of each label
   /// ran alone: each goes three edges beyond the line where it meets others. Of labels that arrive at
@@ -89,16 +104,15 @@ private:
                                 : this->Shapes[static_cast<std::size_t>(t)];
   }
   void FindCorners();
-  /// Find() for times that `arrival` has infinite at first. latest: per vertex, the time from which on
-  /// fronts end there; empty: cutoff alone. Returns the vertices reached, unless `touched` is null.
-  void March(const std::vector<FrontSource>& sources, double cutoff,
-    const std::vector<double>& latest, Arrival& arrival, std::vector<Index>* touched,
-    const ProgressMonitor& progress) const;
+  void FindGates(const std::vector<char>& isOnRim);
   std::vector<double> LongestEdges() const;
+  std::vector<double> TimesOfSources(const std::vector<FrontSource>& sources) const;
+  bool IsAmongSources(const FrontSource& source, const std::vector<double>& times) const;
 
   std::shared_ptr<const TriangleMesh> Mesh;
   FrontShapes Shapes;
   std::vector<char> IsCorner; ///< per vertex
+  std::vector<char> IsClosed; ///< per side 3 t + a, opposite corner a: no way comes through it
 };
 
 } // namespace SurfaceDiffusion

@@ -2,76 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Curvature.h"
 
-#include "Core/Foundation/IndexLists.h"
+#include "Core/Geometry/CoordinateRounding.h"
 #include "Core/Geometry/HeatRegression.h"
-#include "Core/Geometry/OrientedNormals.h"
+#include "Core/Geometry/QuadraticFits.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
-#include <vector>
 
 namespace SurfaceDiffusion
 {
 
 namespace
 {
-
-/// The tangent plane of a vertex.
-Eigen::Matrix<double, 3, 2> TangentAxes(const Eigen::Vector3d& normal)
-{
-  Eigen::Matrix<double, 3, 2> axes;
-  axes.col(0) = normal.unitOrthogonal();
-  axes.col(1) = normal.cross(axes.col(0));
-  return axes;
-}
-
-/// Vertices around a vertex, without itself, ascending.
-struct Disk
-{
-  std::vector<Index> Ring; ///< one edge from it
-  std::vector<Index> All; ///< at most two edges from it
-};
-
-/// The search does not pass vertices of many triangles, such as the middle of a disc that is cut
-/// into slices.
-void FindDisk(const TriangleMesh& mesh, Index centre, Disk& found)
-{
-  std::vector<Index>& disk = found.All;
-  constexpr Index manyTriangles = 32;
-  const auto addNeighbours = [&](Index i)
-  {
-    for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
-    {
-      for (int step = 1; step <= 2; ++step)
-      {
-        disk.push_back(mesh.OtherCorner(mesh.VertexCorners()[c], step));
-      }
-    }
-  };
-  disk.clear();
-  addNeighbours(centre);
-  SortUnique(disk, 0);
-  found.Ring = disk;
-  for (const Index i : found.Ring)
-  {
-    if (found.Ring.size() <= static_cast<std::size_t>(manyTriangles) &&
-      mesh.VertexCornersBegin()[i + 1] - mesh.VertexCornersBegin()[i] <= manyTriangles)
-    {
-      addNeighbours(i);
-    }
-  }
-  SortUnique(disk, 0);
-  const auto own = std::lower_bound(disk.begin(), disk.end(), centre);
-  if (own != disk.end() && *own == centre)
-  {
-    disk.erase(own);
-  }
-}
 
 /// The normal and the curvatures of the quadratic polynomial at a vertex.
 struct LocalShape
@@ -81,88 +26,60 @@ struct LocalShape
   double Gaussian = 0.0;
 };
 
-/// The vertices of the disk that a function over the plane orthogonal to the normal of vertex i can
-/// reach, and if `withRing` all of its ring.
-std::vector<Index> ReachableOf(const Points& normals, Index i, const Disk& disk, bool withRing)
+/// A sharp vertex whose neighbours all lie on one side of its tangent plane is convex or concave. A
+/// polynomial through few vertices, or through those of one flat side beyond a re-entrant edge, may be
+/// flat there or bend to the other side.
+bool IsFlatOrOpposite(double mean, double ofNeighbours)
 {
-  constexpr double steepest = 0.5; // the cosine of the largest angle of normals
-  std::vector<Index> reachable;
-  std::copy_if(disk.All.begin(), disk.All.end(), std::back_inserter(reachable),
-    [&](Index j)
-    {
-      return normals.row(j).dot(normals.row(i)) > steepest ||
-        (withRing && std::binary_search(disk.Ring.begin(), disk.Ring.end(), j));
-    });
-  return reachable;
+  constexpr double flat = 0.01;
+  return ofNeighbours != 0.0 && mean / ofNeighbours < flat;
 }
 
-/// isDetermined: whether these vertices determine the polynomial.
-LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i,
-  const std::vector<Index>& vertices, bool& isDetermined)
+/// The root of half the sum of squares of the principal curvatures.
+double CurvednessOf(double mean, double gaussian)
 {
-  const Eigen::Vector3d normal = normals.row(i).transpose();
-  LocalShape found{ normals.row(i) };
-  isDetermined = false;
-  if (!(normal.norm() > 0.0))
+  return std::sqrt(std::max(0.0, 2.0 * mean * mean - gaussian));
+}
+
+/// rounding: the error of coordinates. Curvature that it may cause is 0.
+LocalShape FitShape(QuadraticFits& fits, const OrientedNormals& normals, double rounding, Index i)
+{
+  LocalShape found{ normals.OfVertices.row(i) };
+  if (!fits.MoveTo(i))
   {
     return found;
   }
-  const auto axes = TangentAxes(normal);
-  const auto count = static_cast<Eigen::Index>(vertices.size());
-  Eigen::Matrix<double, Eigen::Dynamic, 5> rows(count, 5);
-  Vector heights(count);
-  double radius = 0.0;
-  for (Eigen::Index k = 0; k < count; ++k)
-  {
-    const Eigen::Vector3d d = (positions.row(vertices[k]) - positions.row(i)).transpose();
-    rows.row(k).head<2>() = d.transpose() * axes;
-    heights[k] = -d.dot(normal); // positive where the surface bends away from the normal
-    radius = std::max(radius, rows.row(k).head<2>().norm());
-  }
-  if (!(radius > 0.0))
-  {
-    return found;
-  }
-  for (Eigen::Index k = 0; k < count; ++k)
-  {
-    const double x = rows(k, 0) / radius;
-    const double y = rows(k, 1) / radius;
-    rows.row(k) << x, y, 0.5 * x * x, x * y, 0.5 * y * y;
-  }
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, Eigen::Dynamic, 5>> fit;
-  fit.setThreshold(1e-6);
-  fit.compute(rows);
-  isDetermined = fit.rank() == 5;
-  const Eigen::Matrix<double, 5, 1> c = fit.solve(Vector(heights / radius));
+  const double radius = fits.Radius();
+  const QuadraticFits::Coefficients c = fits.Fit(fits.Depths() / radius);
   const double p = c[0];
   const double q = c[1];
   const double w = 1.0 + p * p + q * q;
-  found.Normal = (normal + axes * c.head<2>()).transpose().normalized();
   // By the first and second fundamental forms of the graph.
   found.Mean = ((1.0 + q * q) * c[2] - 2.0 * p * q * c[3] + (1.0 + p * p) * c[4]) /
     (2.0 * w * std::sqrt(w) * radius);
   found.Gaussian = (c[2] * c[4] - c[3] * c[3]) / (w * w * radius * radius);
-  return found;
-}
-
-/// Where the vertices that a function reaches do not determine a polynomial, as at edges and
-/// corners that are sharp, all neighbours count.
-LocalShape FitPolynomial(const Points& positions, const Points& normals, Index i, const Disk& disk)
-{
-  bool isDetermined = false;
-  const std::vector<Index> reachable = ReachableOf(normals, i, disk, false);
-  const LocalShape found = FitPolynomial(positions, normals, i, reachable, isDetermined);
-  if (isDetermined || reachable.size() == disk.All.size())
+  constexpr double largest = 1e4; // of the curvature of rounding, for which errors are estimated
+  const double curvedness = CurvednessOf(found.Mean, found.Gaussian) * radius * radius;
+  if (curvedness < largest * rounding && curvedness <= 2.0 * rounding * fits.ErrorOfSecondOrder())
   {
+    found.Mean = 0.0;
+    found.Gaussian = 0.0;
+  }
+  const double ofNeighbours = fits.IsSharp() ? fits.CurvatureOfNeighbours() : 0.0;
+  if (IsFlatOrOpposite(found.Mean, ofNeighbours))
+  {
+    found.Mean = ofNeighbours;
+    found.Gaussian = ofNeighbours * ofNeighbours;
     return found;
   }
-  return FitPolynomial(positions, normals, i, ReachableOf(normals, i, disk, true), isDetermined);
+  found.Normal = (found.Normal.transpose() + fits.Axes() * c.head<2>()).transpose().normalized();
+  return found;
 }
 
 /// Call use(i, shape) for all vertices.
 template <typename Use>
-void FitEach(const TriangleMesh& mesh, const Points& positions, const Points& normals,
-  const ParallelFor& parallel, const ProgressMonitor& progress, const Use& use)
+void FitEach(const TriangleMesh& mesh, const Points& positions, const OrientedNormals& normals,
+  double rounding, const ParallelFor& parallel, const ProgressMonitor& progress, const Use& use)
 {
   const std::int64_t n = mesh.NumberOfVertices();
   constexpr std::int64_t parts = 16;
@@ -173,15 +90,67 @@ void FitEach(const TriangleMesh& mesh, const Points& positions, const Points& no
     ForEachBlock(parallel, last - first,
       [&](Index, Index begin, Index end)
       {
-        Disk disk;
+        QuadraticFits fits(mesh, positions, normals);
         for (Index i = first + begin; i < first + end; ++i)
         {
-          FindDisk(mesh, i, disk);
-          use(i, FitPolynomial(positions, normals, i, disk));
+          use(i, FitShape(fits, normals, rounding, i));
         }
       });
     progress.Report(static_cast<double>(part + 1) / parts);
   }
+}
+
+/// From the slope of the normals, whose symmetric part has an eigenvalue 0 besides those of the tangent
+/// plane.
+void TakeShapeOperator(const Eigen::Matrix3d& slope, Index i, Curvatures& found)
+{
+  const Eigen::Matrix3d s = 0.5 * (slope + slope.transpose());
+  const double trace = s.trace();
+  found.Mean[i] = 0.5 * trace;
+  found.Gaussian[i] = 0.5 * (trace * trace - s.squaredNorm());
+}
+
+using Tensor = Eigen::Map<const Eigen::Matrix3d>;
+
+Eigen::Vector3d MainAxis(const Tensor& tensor)
+{
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvectors().col(2);
+}
+
+/// On surfaces with one side: with the slope of n n^T, which has no sign, that of n is
+/// dn/dx = (d(n n^T)/dx) n.
+void TakeSlopesWithoutSide(const Assembler& operators, const Points& positions,
+  const Points& fitted, const OrientedNormals& normals, double fwhm, Curvatures& found,
+  const ParallelFor& parallel, const ProgressMonitor& progress)
+{
+  const Index n = operators.Mesh().NumberOfVertices();
+  Values tensors(n, 9);
+  ForEach(parallel, n,
+    [&](Index i)
+    {
+      const Eigen::Matrix3d tensor = fitted.row(i).transpose() * fitted.row(i);
+      tensors.row(i) = Eigen::Map<const Eigen::RowVectorXd>(tensor.data(), 9);
+    });
+  const LinearFits fits = FitByHeat(
+    operators, positions,
+    [](Index, const Eigen::RowVectorXd& smooth) { return MainAxis(Tensor(smooth.data())); },
+    tensors, fwhm, parallel, progress);
+  found.MissedResidual = std::max(found.MissedResidual, fits.MissedResidual);
+  ForEach(parallel, n,
+    [&](Index i)
+    {
+      if (normals.IsOnOneSide(i))
+      {
+        const Eigen::Vector3d normal = MainAxis(Tensor(fits.Constants.row(i).data()));
+        Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();
+        for (int column = 0; column < 9; ++column)
+        {
+          slope.col(column / 3) +=
+            normal[column % 3] * fits.Slopes.row(i).segment<3>(3 * column).transpose();
+        }
+        TakeShapeOperator(slope, i, found);
+      }
+    });
 }
 
 } // namespace
@@ -209,8 +178,9 @@ Curvatures EstimateCurvature(const TriangleMesh& mesh, const Points& positions, 
   found.Mean.resize(n);
   found.Gaussian.resize(n);
   Points fitted(n, 3);
+  const double rounding = RoundingOfCoordinates(positions);
   const double middle = fwhm > 0.0 ? 0.3 : 1.0;
-  FitEach(mesh, positions, normals.OfVertices, parallel, progress.Part(0.05, middle),
+  FitEach(mesh, positions, normals, rounding, parallel, progress.Part(0.05, middle),
     [&](Index i, const LocalShape& shape)
     {
       found.Mean[i] = shape.Mean;
@@ -219,23 +189,35 @@ Curvatures EstimateCurvature(const TriangleMesh& mesh, const Points& positions, 
     });
   if (fwhm > 0.0)
   {
+    const double end = normals.OnOneSide.empty() ? 1.0 : 0.5 * (middle + 1.0);
     const LinearFits fits = FitByHeat(
-      *operators, positions, fitted, fitted, fwhm, true, parallel, progress.Part(middle, 1.0));
+      *operators, positions,
+      [](Index, const Eigen::RowVectorXd& smooth) -> Eigen::Vector3d { return smooth.transpose(); },
+      fitted, fwhm, parallel, progress.Part(middle, end));
     found.MissedResidual = fits.MissedResidual;
     ForEach(parallel, n,
       [&](Index i)
       {
-        // The symmetric part has an eigenvalue 0 besides those of the tangent plane.
         const Eigen::Map<const Eigen::Matrix3d> slope(fits.Slopes.row(i).data());
-        const Eigen::Matrix3d s = 0.5 * (slope + slope.transpose());
-        const double trace = s.trace();
-        found.Mean[i] = 0.5 * trace;
-        found.Gaussian[i] = 0.5 * (trace * trace - s.squaredNorm());
+        TakeShapeOperator(slope, i, found);
       });
+    if (!normals.OnOneSide.empty())
+    {
+      TakeSlopesWithoutSide(
+        *operators, positions, fitted, normals, fwhm, found, parallel, progress.Part(end, 1.0));
+    }
   }
+  constexpr double factor = 32.0;
+  const double least = fwhm > 0.0 ? factor * rounding / (fwhm * fwhm) : 0.0;
   found.Principal.resize(n, 2);
   for (Index i = 0; i < n; ++i)
   {
+    found.Mean[i] = normals.IsOnOneSide(i) ? std::abs(found.Mean[i]) : found.Mean[i];
+    if (CurvednessOf(found.Mean[i], found.Gaussian[i]) <= least)
+    {
+      found.Mean[i] = 0.0;
+      found.Gaussian[i] = 0.0;
+    }
     const double mean = found.Mean[i];
     const double root = std::sqrt(std::max(0.0, mean * mean - found.Gaussian[i]));
     found.Principal.row(i) << mean + root, mean - root;

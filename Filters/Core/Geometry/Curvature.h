@@ -27,17 +27,21 @@ struct Curvatures
 
 /// The eigenvalues of the shape operator S = dn/dx, made symmetric, in the tangent plane.
 ///
-/// fwhm = 0: from the quadratic polynomial that fits the vertices of at most two edges from each
-/// vertex, its own position held, as a function over the plane orthogonal to its normal. Vertices
-/// that such a function cannot reach, with normals at 60 degrees or more, do not count, unless the
-/// others do not determine the polynomial, as at sharp edges and corners: then all neighbours
-/// count. Of several polynomials that fit equally well the one with the smallest coefficients is
-/// taken. The error is of second order in the length of the edges on meshes that look alike in
-/// opposite directions, and of first order on others and at boundaries.
+/// fwhm = 0: from the polynomial that fits the vertices of at most two edges from each vertex, its own
+/// position held, as a function over the plane orthogonal to its normal: see QuadraticFits. Where the
+/// normals of neighbours are at 60 degrees or more, and all neighbours lie on one side of this plane,
+/// a polynomial that is flat or bends to the other side gives way to the paraboloid of revolution
+/// that fits the neighbours: convex corners are positive. The error is of second order in the length
+/// of the edges on meshes that look alike in opposite directions, and of first order on others and
+/// at boundaries.
 ///
 /// fwhm > 0, in LengthUnit(): S is the slope of the normals of these polynomials over the positions
 /// by FitByHeat(), weighted with the Gaussian of this full width at half maximum on the surface. It
 /// is exact on spheres, and has an error of order fwhm^2 elsewhere, of order fwhm at boundaries.
+///
+/// Curvatures that the rounding of the coordinates may cause are 0.
+///
+/// On surfaces with one side, such as a Moebius strip, no sign can be told: H is positive there.
 ///
 /// positions: per vertex, in LengthUnit(). operators: of the heat equation, of a mesh with the same
 /// vertices; not used if fwhm is 0. Those of an intrinsic Delaunay triangulation have no negative

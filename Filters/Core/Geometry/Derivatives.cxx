@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Derivatives.h"
 
+#include "Core/Geometry/QuadraticFits.h"
 #include "Core/Operators/CotanWeights.h"
 
 #include <Eigen/Geometry>
+
+#include <limits>
 
 namespace SurfaceDiffusion
 {
@@ -163,7 +166,7 @@ Values Derivatives::SumFluxes(
         const Eigen::RowVector3d inward = this->BasisGradient(t, own);
         for (Eigen::Index c = 0; c < columns; ++c)
         {
-          sum[c] -= area * onTriangle(t, c).dot(inward);
+          sum[c] -= area * onTriangle(corner, c).dot(inward);
         }
         for (int a = 0; a < 3; ++a) // the edges at the vertex are opposite the other corners
         {
@@ -174,7 +177,7 @@ Values Derivatives::SumFluxes(
             const Index other = this->Mesh.TriangleVertices()(t, 3 - a - own);
             for (Eigen::Index c = 0; c < columns; ++c)
             {
-              sum[c] += onEdge(t, i, other, c).dot(outward);
+              sum[c] += onEdge(corner, i, other, c).dot(outward);
             }
           }
         }
@@ -187,9 +190,11 @@ Values Derivatives::SumFluxes(
 template <typename Turn>
 Values Derivatives::SumOfTriangles(const Values& ofTriangles, const Turn& turn) const
 {
-  const auto of = [&](Index t, Eigen::Index c) { return turn(VectorAt(ofTriangles, t, c), t); };
+  const auto of = [&](Index corner, Eigen::Index c)
+  { return turn(VectorAt(ofTriangles, corner / 3, c), corner); };
   return this->SumFluxes(ofTriangles.cols() / 3, of,
-    [&](Index t, Index, Index, Eigen::Index c) { return Eigen::RowVector3d(0.5 * of(t, c)); });
+    [&](Index corner, Index, Index, Eigen::Index c)
+    { return Eigen::RowVector3d(0.5 * of(corner, c)); });
 }
 
 template <typename Turn>
@@ -197,12 +202,13 @@ Values Derivatives::SumOfVertices(const Values& ofVertices, const Turn& turn) co
 {
   const Values means = this->ToTriangles(ofVertices);
   return this->SumFluxes(
-    means.cols() / 3, [&](Index t, Eigen::Index c) { return turn(VectorAt(means, t, c), t); },
-    [&](Index t, Index i, Index j, Eigen::Index c)
+    means.cols() / 3,
+    [&](Index corner, Eigen::Index c) { return turn(VectorAt(means, corner / 3, c), corner); },
+    [&](Index corner, Index i, Index j, Eigen::Index c)
     {
       const Eigen::RowVector3d onEdge =
         VectorAt(ofVertices, i, c) / 3.0 + VectorAt(ofVertices, j, c) / 6.0;
-      return turn(onEdge, t);
+      return turn(onEdge, corner);
     });
 }
 
@@ -213,21 +219,77 @@ Values Derivatives::Divergence(const Values& ofTriangles) const
 
 Values Derivatives::DivergenceOfVertices(const Values& ofVertices) const
 {
-  return this->SumOfVertices(ofVertices, [](const Eigen::RowVector3d& v, Index) { return v; });
+  const Points normals = SphericalNormals(this->Mesh, this->Oriented, this->Parallel);
+  Values tangential(ofVertices.rows(), ofVertices.cols());
+  ForEach(this->Parallel, this->Mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      for (Eigen::Index c = 0; c < ofVertices.cols() / 3; ++c)
+      {
+        tangential.row(i).segment<3>(3 * c) =
+          WithoutNormal(VectorAt(ofVertices, i, c), normals.row(i));
+      }
+    });
+  return this->SumOfVertices(tangential, [](const Eigen::RowVector3d& v, Index) { return v; });
+}
+
+Eigen::RowVector3d Derivatives::Turned(const Eigen::RowVector3d& v, Index corner) const
+{
+  return this->Oriented.SideOf(corner) * v.cross(this->Oriented.OfTriangles.row(corner / 3));
+}
+
+Values Derivatives::WithoutSign(Values curl) const
+{
+  for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
+  {
+    if (this->Oriented.IsOnOneSide(i))
+    {
+      curl.row(i) = curl.row(i).cwiseAbs();
+    }
+  }
+  return curl;
 }
 
 Values Derivatives::Curl(const Values& ofTriangles) const
 {
-  return this->SumOfTriangles(ofTriangles,
-    [this](const Eigen::RowVector3d& v, Index t)
-    { return Eigen::RowVector3d(v.cross(this->Oriented.OfTriangles.row(t))); });
+  return this->WithoutSign(this->SumOfTriangles(ofTriangles,
+    [this](const Eigen::RowVector3d& v, Index corner) { return this->Turned(v, corner); }));
 }
 
 Values Derivatives::CurlOfVertices(const Values& ofVertices) const
 {
-  return this->SumOfVertices(ofVertices,
-    [this](const Eigen::RowVector3d& v, Index t)
-    { return Eigen::RowVector3d(v.cross(this->Oriented.OfTriangles.row(t))); });
+  return this->WithoutSign(this->SumOfVertices(ofVertices,
+    [this](const Eigen::RowVector3d& v, Index corner) { return this->Turned(v, corner); }));
+}
+
+Values Derivatives::Laplacian(const Values& u) const
+{
+  Values laplacian = this->Divergence(this->Gradients(u));
+  const std::vector<Index>& boundary = this->Mesh.BoundaryVertices();
+  ForEachBlock(this->Parallel, static_cast<Index>(boundary.size()),
+    [&](Index, Index begin, Index end)
+    {
+      QuadraticFits fits(this->Mesh, this->Positions, this->Oriented);
+      for (Index b = begin; b < end; ++b)
+      {
+        const Index i = boundary[b];
+        if (!fits.MoveTo(i) || !fits.IsDetermined())
+        {
+          laplacian.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+          continue;
+        }
+        for (Eigen::Index c = 0; c < u.cols(); ++c)
+        {
+          Vector differences(static_cast<Eigen::Index>(fits.Vertices().size()));
+          for (Eigen::Index k = 0; k < differences.size(); ++k)
+          {
+            differences[k] = u(fits.Vertices()[static_cast<std::size_t>(k)], c) - u(i, c);
+          }
+          laplacian(i, c) = fits.LaplacianOf(fits.Fit(differences));
+        }
+      }
+    });
+  return laplacian;
 }
 
 } // namespace SurfaceDiffusion

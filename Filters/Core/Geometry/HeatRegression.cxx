@@ -103,9 +103,9 @@ double SmoothByHeat(const Assembler& assembler, double fwhm, Values& u, LinearSo
   return missed;
 }
 
-LinearFits FitByHeat(const Assembler& assembler, const Points& positions, const Points& normals,
-  const Values& u, double fwhm, bool smoothedNormals, const ParallelFor& parallel,
-  const ProgressMonitor& progress)
+LinearFits FitByHeat(const Assembler& assembler, const Points& positions,
+  const std::function<Eigen::Vector3d(Index, const Eigen::RowVectorXd&)>& normalOf, const Values& u,
+  double fwhm, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = assembler.Mesh();
   const Index n = mesh.NumberOfVertices();
@@ -145,10 +145,7 @@ LinearFits FitByHeat(const Assembler& assembler, const Points& positions, const 
         product[4], product[5];
       spread -= mean.transpose() * mean;
       const auto means = moments.row(i).segment(DataBegin, k);
-      const Eigen::Vector3d normal = smoothedNormals
-        ? Eigen::Vector3d((means + middle).head<3>().transpose())
-        : Eigen::Vector3d(normals.row(i).transpose());
-      const auto axes = AxesOfPlane(normal);
+      const auto axes = AxesOfPlane(normalOf(i, means + middle));
       const Eigen::Matrix2d inverse = InvertSpread(axes.transpose() * spread * axes);
       for (Eigen::Index c = 0; c < k; ++c)
       {

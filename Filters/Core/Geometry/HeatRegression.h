@@ -5,6 +5,8 @@
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Operators/Assembler.h"
 
+#include <functional>
+
 namespace SurfaceDiffusion
 {
 
@@ -36,10 +38,11 @@ struct LinearFits
 /// functions that are linear in space and tangential, one-sided at boundaries, and for the normals
 /// of a sphere, which are a multiple of x.
 ///
-/// positions: per vertex, in LengthUnit(). u: n x k. normals: per vertex; if `smoothedNormals` is
-/// true, u are normals, and E[u] takes their place. Throws Aborted, NotConverged, bad_alloc.
-LinearFits FitByHeat(const Assembler& assembler, const Points& positions, const Points& normals,
-  const Values& u, double fwhm, bool smoothedNormals = false,
-  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+/// positions: per vertex, in LengthUnit(). u: n x k. normalOf(i, E[u]): n_i, of any length and sign,
+/// from its number and the k means. Throws Aborted, NotConverged, bad_alloc.
+LinearFits FitByHeat(const Assembler& assembler, const Points& positions,
+  const std::function<Eigen::Vector3d(Index, const Eigen::RowVectorXd&)>& normalOf, const Values& u,
+  double fwhm, const ParallelFor& parallel = SerialFor(),
+  const ProgressMonitor& progress = ProgressMonitor());
 
 } // namespace SurfaceDiffusion

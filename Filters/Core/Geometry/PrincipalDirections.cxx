@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/PrincipalDirections.h"
 
+#include "Core/Geometry/CoordinateRounding.h"
 #include "Core/Geometry/HeatRegression.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/TangentVectors.h"
@@ -109,7 +110,10 @@ PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
   ForEach(parallel, mesh.NumberOfVertices(),
     [&](Index i) { vertexNormals.row(i) = MainNormal(tensors, i); });
 
-  constexpr double roundOff = 1e-9; // of curvatures, on a surface of about unit size
+  // On a surface of about unit size curvatures have round-off, and at their scale that of coordinates.
+  constexpr double roundOff = 1e-9;
+  constexpr double factor = 32.0;
+  const double rounding = factor * RoundingOfCoordinates(points) / mesh.LengthUnit();
   principal.MinimumCurvature.resize(mesh.NumberOfTriangles(), 2);
   principal.Difference.resize(mesh.NumberOfTriangles());
   ForEach(parallel, mesh.NumberOfTriangles(),
@@ -123,7 +127,8 @@ PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
       const double difference = std::hypot(s.XX - s.YY, 2.0 * s.XY);
       principal.Difference[t] = std::min(std::abs(sum), difference);
       Eigen::RowVector2d direction = Eigen::RowVector2d::Zero();
-      if (principal.Difference[t] > roundOff)
+      const double square = std::max(mesh.Shapes()[t].Area(), fwhm * fwhm);
+      if (principal.Difference[t] > std::max(roundOff, rounding / square))
       {
         const double angle =
           0.5 * std::atan2(2.0 * s.XY, s.XX - s.YY) + (sum > 0.0 ? 0.5 * std::acos(-1.0) : 0.0);

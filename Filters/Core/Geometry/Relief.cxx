@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -106,6 +107,29 @@ double VolumeOf(const Points& points, const Triangles& faces)
       (PlaceOf(points, faces(t, 0)) - center.transpose()).dot(DoubledNormal(points, faces, t));
   }
   return volume / 6.0;
+}
+
+/// Per triangle, the first with the same corners.
+std::vector<Index> FindFirsts(const Triangles& faces)
+{
+  using Corners = std::array<Index, 3>;
+  std::vector<std::pair<Corners, Index>> sorted;
+  sorted.reserve(static_cast<std::size_t>(faces.rows()));
+  for (Index t = 0; t < static_cast<Index>(faces.rows()); ++t)
+  {
+    Corners corners{ faces(t, 0), faces(t, 1), faces(t, 2) };
+    std::sort(corners.begin(), corners.end());
+    sorted.emplace_back(corners, t);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<Index> firsts(sorted.size());
+  for (std::size_t k = 0; k < sorted.size(); ++k)
+  {
+    const bool isFirst = k == 0 || sorted[k].first != sorted[k - 1].first;
+    firsts[static_cast<std::size_t>(sorted[k].second)] =
+      isFirst ? sorted[k].second : firsts[static_cast<std::size_t>(sorted[k - 1].second)];
+  }
+  return firsts;
 }
 
 /// Orient the triangles alike across edges of two, and outwards if they enclose a volume.
@@ -291,12 +315,30 @@ Relief MakeRelief(const Points& points, const Triangles& triangles, const Vector
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   Relief relief;
-  relief.Faces = triangles;
+  const std::vector<Index> firsts = FindFirsts(triangles);
+  Triangles faces(triangles.rows(), 3);
+  std::vector<Index> places(firsts.size()); // of the first ones among faces
+  Index distinct = 0;
+  for (std::size_t t = 0; t < firsts.size(); ++t)
+  {
+    if (firsts[t] == static_cast<Index>(t))
+    {
+      places[t] = distinct;
+      faces.row(distinct++) = triangles.row(static_cast<Index>(t));
+    }
+  }
+  faces.conservativeResize(distinct, 3);
+  relief.RepeatedTriangles = static_cast<Index>(firsts.size()) - distinct;
   const auto count = static_cast<Index>(points.rows());
-  const EdgeCounts edges = TurnOutwards(points, relief.Faces);
+  const EdgeCounts edges = TurnOutwards(points, faces);
   relief.OpenEdges = edges.Open;
   relief.NonManifoldEdges = edges.NonManifold;
-  const Triangles& faces = relief.Faces;
+  relief.Faces.resize(triangles.rows(), 3);
+  for (std::size_t t = 0; t < firsts.size(); ++t)
+  {
+    relief.Faces.row(static_cast<Index>(t)) =
+      faces.row(places[static_cast<std::size_t>(firsts[t])]);
+  }
   progress.Report(0.1);
   const Points normals = UnitNormals(points, faces, parallel);
   const Points directions = FindDirections(points, faces, normals, parallel);

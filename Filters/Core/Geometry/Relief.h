@@ -42,6 +42,7 @@ struct Relief
   Index LoweredVertices = 0; ///< whose height is less than the given one
   Index OpenEdges = 0; ///< of one triangle
   Index NonManifoldEdges = 0; ///< of three or more triangles
+  Index RepeatedTriangles = 0; ///< with the same corners as one before, which count once
   Index CrossingTrianglesBefore = 0; ///< see FindSelfIntersections()
   Index CrossingTriangles = 0; ///< after the relief
   double VolumeChange = 0.0; ///< the volume after the relief less that before, if it is closed
@@ -64,8 +65,8 @@ struct Relief
 /// still do, heights are halved, and at last 0.
 ///
 /// Vertices on edges of one triangle, and of three or more, stay, so that rims fit what they fitted
-/// before. Triangles are oriented first, see OrientTriangles(). The result has the same triangles:
-/// it is closed where the input is.
+/// before. Triangles are oriented first, see OrientTriangles(); those with the same corners count as
+/// one, and get one orientation. The result has the same triangles: it is closed where the input is.
 ///
 /// heights: per vertex, finite. Throws Aborted.
 Relief MakeRelief(const Points& points, const Triangles& triangles, const Vector& heights,

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/SelfIntersections.h"
 
-#include "Core/Geometry/TriangleTree.h"
+#include "Core/Geometry/TriangleStars.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace SurfaceDiffusion
 {
@@ -16,6 +17,8 @@ namespace
 
 /// Distances below this, over the size of the surface, are rounding of coordinates.
 constexpr double Touching = 1e-12;
+
+using Vector3 = Eigen::Vector3d;
 
 class CrossingTest
 {
@@ -31,76 +34,201 @@ public:
     }
   }
 
-  bool Cross(Index t, Index u) const
+  /// Whether both cross along a line, see FindSelfIntersections().
+  bool Cross(const TriangleStars& tree, Index t, Index u) const
   {
     int common = 0;
-    std::array<bool, 3> inFirst{};
-    std::array<bool, 3> inSecond{};
-    for (std::size_t a = 0; a < 3; ++a)
+    for (int a = 0; a < 3; ++a)
     {
-      for (std::size_t b = 0; b < 3; ++b)
+      for (int b = 0; b < 3; ++b)
       {
-        if (this->Faces(t, static_cast<int>(a)) == this->Faces(u, static_cast<int>(b)))
-        {
-          ++common;
-          inFirst[a] = true;
-          inSecond[b] = true;
-        }
+        common += this->Faces(t, a) == this->Faces(u, b);
       }
     }
-    return common < 2 &&
-      (this->AnyEdgePasses(t, u, inFirst) || this->AnyEdgePasses(u, t, inSecond));
+    if (common > 1)
+    {
+      return false;
+    }
+    const Sides first = this->SidesOf(t, u);
+    if (!first.Meets())
+    {
+      return false;
+    }
+    const Sides second = this->SidesOf(u, t);
+    if (!second.Meets())
+    {
+      return false;
+    }
+    const Vector3 along = first.Normal.cross(second.Normal).normalized();
+    const Vector3 from = this->AnyCommonPlace(t, first);
+    const Interval a = this->IntervalOf(t, first, from, along);
+    const Interval b = this->IntervalOf(u, second, from, along);
+    const double begin = std::max(a.Begin, b.Begin);
+    const double end = std::min(a.End, b.End);
+    if (!(end - begin > this->Tolerance))
+    {
+      return false;
+    }
+    const Vector3 middle = from + 0.5 * (begin + end) * along;
+    return this->AreInterleaved(this->HalfPlanes(tree, t, first, middle, along),
+      this->HalfPlanes(tree, u, second, middle, along), along);
   }
 
 private:
-  Eigen::Vector3d Place(Index t, int corner) const
+  /// On which sides of the plane of another triangle the corners are: -1, 0 or 1.
+  struct Sides
+  {
+    Vector3 Normal; ///< of that plane
+    std::array<double, 3> Distances; ///< times the length of the normal
+    std::array<int, 3> Signs;
+
+    /// Whether the triangle has a line in common with the plane, and not all of itself.
+    bool Meets() const
+    {
+      const auto [least, most] = std::minmax_element(this->Signs.begin(), this->Signs.end());
+      return *least * *most < 0 || (*least != *most && this->Edge() >= 0);
+    }
+    /// The corner opposite to the side in the plane; -1: there is none.
+    int Edge() const
+    {
+      const auto zeros = std::count(this->Signs.begin(), this->Signs.end(), 0);
+      const auto other =
+        std::find_if(this->Signs.begin(), this->Signs.end(), [](int s) { return s; });
+      return zeros == 2 ? static_cast<int>(other - this->Signs.begin()) : -1;
+    }
+  };
+  struct Interval
+  {
+    double Begin = std::numeric_limits<double>::infinity();
+    double End = -std::numeric_limits<double>::infinity();
+  };
+
+  Vector3 Place(Index t, int corner) const
   {
     return this->Places.row(this->Faces(t, corner)).transpose();
   }
 
-  /// Whether an edge of t passes through u. Edges at a common vertex start in u.
-  bool AnyEdgePasses(Index t, Index u, const std::array<bool, 3>& isCommon) const
+  Sides SidesOf(Index t, Index plane) const
   {
-    for (int a = 0; a < 3; ++a)
-    {
-      const int b = (a + 1) % 3;
-      if (!isCommon[static_cast<std::size_t>(a)] && !isCommon[static_cast<std::size_t>(b)] &&
-        this->Passes(this->Place(t, a), this->Place(t, b), u))
-      {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /// Both ends are clearly on different sides of the plane, and the line is clearly within the
-  /// triangle.
-  bool Passes(const Eigen::Vector3d& p, const Eigen::Vector3d& q, Index u) const
-  {
-    const std::array<Eigen::Vector3d, 3> corners{ this->Place(u, 0), this->Place(u, 1),
-      this->Place(u, 2) };
-    const Eigen::Vector3d along = corners[1] - corners[0];
-    const Eigen::Vector3d across = corners[2] - corners[0];
-    const Eigen::Vector3d normal = along.cross(across);
-    const double first = normal.dot(p - corners[0]);
-    const double second = normal.dot(q - corners[0]);
+    Sides sides;
+    const Vector3 corner = this->Place(plane, 0);
+    const Vector3 along = this->Place(plane, 1) - corner;
+    const Vector3 across = this->Place(plane, 2) - corner;
+    sides.Normal = along.cross(across);
     // The normal of a needle may be rounding alone, and is small against the product of its sides.
     const double least = this->Tolerance * along.norm() * across.norm();
-    if (!(std::min(first, second) < -least && std::max(first, second) > least))
+    for (int a = 0; a < 3; ++a)
     {
-      return false;
+      const double distance = sides.Normal.dot(this->Place(t, a) - corner);
+      sides.Distances[static_cast<std::size_t>(a)] = distance;
+      sides.Signs[static_cast<std::size_t>(a)] = distance > least ? 1 : distance < -least ? -1 : 0;
     }
-    const Eigen::Vector3d through = p + (q - p) * (first / (first - second));
+    return sides;
+  }
+
+  /// use(place) for the ends of what triangle t has in common with the plane.
+  template <typename Use>
+  void ForEachEnd(Index t, const Sides& sides, const Use& use) const
+  {
     for (std::size_t a = 0; a < 3; ++a)
     {
-      const Eigen::Vector3d side = corners[(a + 1) % 3] - corners[a];
-      const double inside = side.cross(through - corners[a]).dot(normal);
-      if (!(inside > this->Tolerance * side.norm() * normal.norm()))
+      const std::size_t b = (a + 1) % 3;
+      const Vector3 p = this->Place(t, static_cast<int>(a));
+      if (sides.Signs[a] == 0)
       {
-        return false;
+        use(p);
+      }
+      else if (sides.Signs[a] * sides.Signs[b] < 0)
+      {
+        const Vector3 q = this->Place(t, static_cast<int>(b));
+        use(
+          Vector3(p + (q - p) * (sides.Distances[a] / (sides.Distances[a] - sides.Distances[b]))));
       }
     }
-    return true;
+  }
+
+  Vector3 AnyCommonPlace(Index t, const Sides& sides) const
+  {
+    Vector3 found;
+    this->ForEachEnd(t, sides, [&](const Vector3& place) { found = place; });
+    return found;
+  }
+
+  /// Where triangle t is on the line of both planes, through `from`.
+  Interval IntervalOf(Index t, const Sides& sides, const Vector3& from, const Vector3& along) const
+  {
+    Interval interval;
+    this->ForEachEnd(t, sides,
+      [&](const Vector3& place)
+      {
+        const double at = along.dot(place - from);
+        interval.Begin = std::min(interval.Begin, at);
+        interval.End = std::max(interval.End, at);
+      });
+    return interval;
+  }
+
+  /// Two vectors from the line at `middle` into the surface of triangle t, across the line: those
+  /// to both sides within the triangle or, if the line is along its side, into it and into its
+  /// neighbour. Zero if it has not one neighbour there.
+  std::array<Vector3, 2> HalfPlanes(const TriangleStars& tree, Index t, const Sides& sides,
+    const Vector3& middle, const Vector3& along) const
+  {
+    const auto across = [&](const Vector3& place) -> Vector3
+    { return place - middle - along.dot(place - middle) * along; };
+    const int opposite = sides.Edge();
+    if (opposite < 0)
+    {
+      const auto highest = std::max_element(sides.Distances.begin(), sides.Distances.end());
+      const auto lowest = std::min_element(sides.Distances.begin(), sides.Distances.end());
+      return { across(this->Place(t, static_cast<int>(highest - sides.Distances.begin()))),
+        across(this->Place(t, static_cast<int>(lowest - sides.Distances.begin()))) };
+    }
+    std::array<Vector3, 2> both{ across(this->Place(t, opposite)), Vector3::Zero() };
+    const Index p = this->Faces(t, (opposite + 1) % 3);
+    const Index q = this->Faces(t, (opposite + 2) % 3);
+    const Vector3 place = this->Places.row(p).transpose();
+    Index neighbours = 0;
+    tree.Visit([&](const TriangleStars::Box& box) { return box.contains(place); },
+      [&](Index v)
+      {
+        const auto face = this->Faces.row(v);
+        if (v != t && (face.array() == p).any() && (face.array() == q).any())
+        {
+          ++neighbours;
+          const Index other = face.sum() - p - q;
+          both[1] = across(this->Places.row(other).transpose());
+        }
+      });
+    both[1] *= neighbours == 1 ? 1.0 : 0.0;
+    return both;
+  }
+
+  /// Whether the half planes alternate around the line, clearly.
+  bool AreInterleaved(const std::array<Vector3, 2>& first, const std::array<Vector3, 2>& second,
+    const Vector3& along) const
+  {
+    const auto turn = [&](const Vector3& from, const Vector3& to)
+    { return along.dot(from.cross(to)); };
+    for (const Vector3& a : first)
+    {
+      for (const Vector3& b : second)
+      {
+        // from the one half plane to a corner of the other
+        const double most = this->Tolerance * std::min(a.norm(), b.norm());
+        if (a.dot(b) >= 0.0 && !(std::abs(turn(a, b)) > most))
+        {
+          return false;
+        }
+      }
+    }
+    const auto angle = [&](const Vector3& to)
+    {
+      const double found = std::atan2(turn(first[0], to), first[0].dot(to));
+      return found < 0.0 ? found + 2.0 * std::acos(-1.0) : found;
+    };
+    const double last = angle(first[1]);
+    return (angle(second[0]) < last) != (angle(second[1]) < last);
   }
 
   const Points& Places;
@@ -113,23 +241,24 @@ private:
 std::vector<char> FindSelfIntersections(const Points& points, const Triangles& triangles,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
-  const TriangleTree tree(points, triangles);
+  const TriangleStars tree(points, triangles);
   const CrossingTest test(points, triangles);
   std::vector<char> crosses(static_cast<std::size_t>(triangles.rows()), 0);
   const auto find = [&](Index t)
   {
-    TriangleTree::Box box;
+    TriangleStars::Box box;
     for (int a = 0; a < 3; ++a)
     {
       box.extend(points.row(triangles(t, a)).transpose());
     }
     char& found = crosses[static_cast<std::size_t>(t)];
-    tree.Visit([&](const TriangleTree::Box& other) { return !found && box.intersects(other); },
+    tree.VisitMeeting(
+      t, [&](const TriangleStars::Box& other) { return !found && box.intersects(other); },
       [&](Index u)
       {
         if (!found && u != t)
         {
-          found = test.Cross(t, u);
+          found = test.Cross(tree, t, u);
         }
       });
   };

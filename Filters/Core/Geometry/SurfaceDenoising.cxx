@@ -6,8 +6,12 @@
 #include "Core/Geometry/SurfaceParts.h"
 #include "Core/Geometry/VertexNoise.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -22,6 +26,11 @@ constexpr double SmallestEstimate = 0.005;
 constexpr double SmallestNoise = 1e-4;
 /// A displacement beyond this many noise levels is reported.
 constexpr double FarDisplacement = 10.0;
+/// Of two triangles, the fourth corner is that near to the plane of the first three, in noise levels,
+/// at no more than 1 % of the edges under noise, and at a third of them and more where quadrilaterals
+/// are cut in two. Steps of depth cameras leave up to a fifth.
+constexpr double FlatDistance = 0.01;
+constexpr double LargestFlatShare = 0.25;
 
 /// correlated: what was found of it.
 double EstimateNoise(const TriangleMesh& mesh, const Points& points,
@@ -35,12 +44,87 @@ double EstimateNoise(const TriangleMesh& mesh, const Points& points,
   return estimate < SmallestEstimate * mesh.MeanEdgeLength() ? 0.0 : estimate;
 }
 
-/// What was found of a part, and the displacements of its rows in their units.
+/// Whether neighbouring triangles lie in one plane so often that noise of this level, which leaves
+/// none of them there, is no explanation: vertices are at corners and edges of the shape.
+bool HasFlatFaces(const TriangleMesh& mesh, const Points& points, double noise)
+{
+  using Side = std::tuple<Index, Index, Index>; // two vertices and the one opposite
+  std::vector<Side> sides;
+  sides.reserve(3 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
+  for (Index c = 0; c < 3 * mesh.NumberOfTriangles(); ++c)
+  {
+    const auto [low, high] = std::minmax({ mesh.OtherCorner(c, 1), mesh.OtherCorner(c, 2) });
+    sides.emplace_back(low, high, mesh.TriangleVertices()(c / 3, c % 3));
+  }
+  std::sort(sides.begin(), sides.end());
+  Index inner = 0;
+  Index flat = 0;
+  for (std::size_t k = 0; k + 1 < sides.size(); ++k)
+  {
+    const auto [low, high, first] = sides[k];
+    const auto [otherLow, otherHigh, second] = sides[k + 1];
+    if (low == otherLow && high == otherHigh)
+    {
+      const Eigen::RowVector3d from = points.row(low);
+      const Eigen::RowVector3d along = points.row(high) - from;
+      const Eigen::RowVector3d other = points.row(first) - from;
+      const Eigen::RowVector3d normal = along.cross(other).stableNormalized();
+      ++inner;
+      flat += std::abs(normal.dot(points.row(second) - from)) < FlatDistance * noise;
+    }
+  }
+  return flat > LargestFlatShare * inner;
+}
+
+/// The enclosed volume of each connected component; 0 unless it is closed and consistently oriented.
+/// places: per row of the input.
+std::vector<double> VolumesOfComponents(const TriangleMesh& mesh, const Points& places)
+{
+  std::vector<std::pair<Index, Index>> sides, reversed;
+  for (Index c = 0; c < 3 * mesh.NumberOfTriangles(); ++c)
+  {
+    const Index from = mesh.OtherCorner(c, 1);
+    const Index to = mesh.OtherCorner(c, 2);
+    sides.emplace_back(from, to);
+    reversed.emplace_back(to, from);
+  }
+  std::sort(sides.begin(), sides.end());
+  std::sort(reversed.begin(), reversed.end());
+  const std::vector<Index>& begin = mesh.ComponentsBegin();
+  std::vector<double> volumes;
+  std::size_t first = 0;
+  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
+  {
+    const auto at = [&](Index i) -> Eigen::RowVector3d
+    { return places.row(mesh.InputVertex()[i]) - places.row(mesh.InputVertex()[begin[c]]); };
+    bool isClosed = true;
+    double volume = 0.0;
+    for (; first < sides.size() && sides[first].first < begin[c + 1]; ++first)
+    {
+      isClosed = isClosed && sides[first] == reversed[first];
+    }
+    for (Index i = begin[c]; i < begin[c + 1] && isClosed; ++i)
+    {
+      // a third of the tetrahedra over the triangles around the vertex
+      for (Index k = mesh.VertexCornersBegin()[i]; k < mesh.VertexCornersBegin()[i + 1]; ++k)
+      {
+        const Index corner = mesh.VertexCorners()[k];
+        volume += at(i).dot(at(mesh.OtherCorner(corner, 1)).cross(at(mesh.OtherCorner(corner, 2))));
+      }
+    }
+    volumes.push_back(isClosed ? volume / 18.0 : 0.0);
+  }
+  return volumes;
+}
+
+/// What was found of a part, and the displacements of its rows.
 struct DenoisedPart
 {
-  double NoiseLevel = 0.0; ///< in Units
-  double CorrelationLength = 0.0; ///< the same
+  double NoiseLevel = 0.0;
+  double CorrelationLength = 0.0;
   SurfaceType Type = SurfaceType::Automatic;
+  bool IsCoarse = false; ///< its noise cannot be told from its shape
+  double VolumeChange = 0.0; ///< over the volume
   Points Displacements;
 };
 
@@ -69,6 +153,12 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   {
     return result;
   }
+  if (!(given > 0.0 || correlated.Level > 0.0) && HasFlatFaces(mesh, points, noise))
+  {
+    result.NoiseLevel = 0.0;
+    result.IsCoarse = true;
+    return result;
+  }
   std::vector<char> isFixed;
   for (Index i = 0; i < mesh.NumberOfVertices() && !fixed.empty(); ++i)
   {
@@ -83,10 +173,23 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
     mesh, points, isFixed, noise, scheme, type, parallel, progress.Part(0.05, 1.0));
   result.Type = settings.Type == SurfaceType::Automatic ? denoised.Type : settings.Type;
   result.CorrelationLength = correlated.Length * unit;
+  Points places = Points::Zero(rows, 3);
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
+    places.row(mesh.InputVertex()[i]) = unit * points.row(i);
     result.Displacements.row(mesh.InputVertex()[i]) =
       unit * (denoised.Moved.row(i) - points.row(i));
+  }
+  const std::vector<double> before = VolumesOfComponents(mesh, places);
+  places += result.Displacements;
+  const std::vector<double> after = VolumesOfComponents(mesh, places);
+  for (std::size_t c = 0; c < before.size(); ++c)
+  {
+    const double change = before[c] != 0.0 ? after[c] / before[c] - 1.0 : 0.0;
+    if (std::abs(change) > std::abs(result.VolumeChange))
+    {
+      result.VolumeChange = change;
+    }
   }
   return result;
 }
@@ -116,8 +219,7 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
   const std::vector<char>& fixed, const DenoisingSettings& settings, DenoisingReport* report,
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
-  std::vector<SurfacePart> parts = DivideSurface(
-    mesh, points, settings.NoiseLevel > 0.0 ? PartUnit::Common : PartUnit::OwnEdges, parallel);
+  std::vector<SurfacePart> parts = DivideSurface(mesh, points, parallel);
   progress.Report(0.02);
   DenoisingReport found;
   TypeOfParts type;
@@ -133,19 +235,29 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
     {
       isFixed.push_back(fixed[part.Vertices[i]]);
     }
+    found.Parts += part.Components;
     const double end = done + static_cast<double>(size) / count;
-    const DenoisedPart denoised = DenoisePart(
-      part, isFixed, settings, parallel, progress.Part(0.02 + 0.98 * done, 0.02 + 0.98 * end));
+    const ProgressMonitor partProgress = progress.Part(0.02 + 0.98 * done, 0.02 + 0.98 * end);
     done = end;
+    if (part.IsCoarse && !(settings.NoiseLevel > 0.0))
+    {
+      found.CoarseParts += part.Components;
+      partProgress.Report(1.0);
+      continue;
+    }
+    const DenoisedPart denoised = DenoisePart(part, isFixed, settings, parallel, partProgress);
+    found.CoarseParts += denoised.IsCoarse;
+    found.VolumeChange = std::abs(denoised.VolumeChange) > std::abs(found.VolumeChange)
+      ? denoised.VolumeChange
+      : found.VolumeChange;
+    found.CorrelationLength = std::max(found.CorrelationLength, denoised.CorrelationLength);
     type.Add(denoised.Type);
+    const double level = denoised.NoiseLevel;
     for (std::size_t i = 0; i < size; ++i)
     {
-      const Eigen::RowVector3d step = part.Units[i] * denoised.Displacements.row(i);
-      const double level = part.Units[i] * denoised.NoiseLevel;
+      const Eigen::RowVector3d step = denoised.Displacements.row(i);
       moved.row(part.Vertices[i]) += step;
       variance += level * level / count;
-      found.CorrelationLength =
-        std::max(found.CorrelationLength, part.Units[i] * denoised.CorrelationLength);
       found.MeanDisplacement += step.norm() / count;
       found.MaximumDisplacement = std::max(found.MaximumDisplacement, step.norm());
       found.FarVertices += step.norm() > FarDisplacement * level;

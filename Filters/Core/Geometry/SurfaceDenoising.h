@@ -30,13 +30,21 @@ struct DenoisingReport
   /// The vertices whose displacement is more than 10 times the noise level of their part: outliers,
   /// edges that were sharpened, or triangles so thin that their normals determine no place.
   Index FarVertices = 0;
+  Index Parts = 0; ///< connected components
+  /// Those whose noise cannot be told from their shape, and that stay: with less than 200 vertices,
+  /// or with more than a quarter of the edges within a flat face. None if the level is given.
+  Index CoarseParts = 0;
+  /// The largest relative change of the volume of a part that is closed.
+  double VolumeChange = 0.0;
 };
 
 /// Remove the noise of the vertices of a triangulated surface.
 ///
 /// Connected components have their own unit of length, noise level and type, so that the result for
-/// several surfaces together is that of each alone. Those with less than 200 vertices, too few for
-/// statistics, share one noise level, relative to their mean edge lengths, and one type. Triangles
+/// several surfaces together is that of each alone. Those with less than 200 vertices are too few for
+/// an estimate of the noise, and stay; if the level is given, they share one type. So do those with
+/// more than a quarter of their edges within a flat face, which no noise leaves: their vertices are
+/// at corners and edges of the shape, which resemble noise. Triangles
 /// are oriented first (see OrientTriangles()), and the result does not depend on the numbering of
 /// vertices and triangles.
 ///

@@ -91,19 +91,6 @@ void SortFaces(std::vector<Face>& faces)
     });
 }
 
-double MeanSide(const Points& places, const std::vector<Face>& faces)
-{
-  double sum = 0.0;
-  for (const Face& f : faces)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      sum += (places.row(f[a]) - places.row(f[(a + 1) % 3])).norm();
-    }
-  }
-  return sum / (3.0 * static_cast<double>(faces.size()));
-}
-
 /// The triangles of each connected component.
 Groups GroupTriangles(const TriangleMesh& mesh, const ParallelFor& parallel)
 {
@@ -121,10 +108,10 @@ Groups GroupTriangles(const TriangleMesh& mesh, const ParallelFor& parallel)
 class PartBuilder
 {
 public:
-  PartBuilder(const TriangleMesh& mesh, const Points& points, PartUnit unit)
+  PartBuilder(const TriangleMesh& mesh, const Points& points, bool isCoarse)
     : Mesh(mesh)
     , Given(points)
-    , Unit(unit)
+    , IsCoarse(isCoarse)
     , Number(static_cast<std::size_t>(mesh.NumberOfVertices()))
   {
   }
@@ -150,19 +137,17 @@ public:
       }
     }
     SortFaces(faces);
-    const double side = MeanSide(places, faces);
-    const double unit = this->Unit == PartUnit::OwnEdges && side > 0.0 ? side : 1.0;
     const auto first = static_cast<Index>(this->Vertices.size());
     this->Vertices.insert(this->Vertices.end(), vertices.begin(), vertices.end());
     for (Index i = 0; i < size; ++i)
     {
-      this->Places.emplace_back(places.row(i) / unit);
-      this->Units.push_back(unit);
+      this->Places.emplace_back(places.row(i));
     }
     for (const Face& f : faces)
     {
       this->Faces.push_back({ first + f[0], first + f[1], first + f[2] });
     }
+    ++this->Components;
   }
 
   bool IsEmpty() const { return this->Faces.empty(); }
@@ -172,11 +157,9 @@ public:
   {
     SurfacePart part;
     part.Places.resize(static_cast<Index>(this->Vertices.size()), 3);
-    part.Units.resize(static_cast<Index>(this->Vertices.size()));
     for (std::size_t i = 0; i < this->Vertices.size(); ++i)
     {
       part.Places.row(i) = this->Places[i];
-      part.Units[i] = this->Units[i];
     }
     part.Vertices.swap(this->Vertices);
     part.Faces.resize(static_cast<Index>(this->Faces.size()), 3);
@@ -184,9 +167,11 @@ public:
     {
       part.Faces.row(t) << this->Faces[t][0], this->Faces[t][1], this->Faces[t][2];
     }
+    part.Components = this->Components;
+    part.IsCoarse = this->IsCoarse;
+    this->Components = 0;
     OrientTriangles(part.Places, part.Faces);
     this->Places.clear();
-    this->Units.clear();
     this->Faces.clear();
     this->Vertices.clear();
     return part;
@@ -195,23 +180,23 @@ public:
 private:
   const TriangleMesh& Mesh;
   const Points& Given;
-  const PartUnit Unit;
+  const bool IsCoarse;
   std::vector<Index> Number; ///< per vertex: its place among those of its component
   std::vector<Index> Vertices;
   std::vector<Row3> Places;
-  std::vector<double> Units;
   std::vector<Face> Faces;
+  Index Components = 0;
 };
 
 } // namespace
 
 std::vector<SurfacePart> DivideSurface(
-  const TriangleMesh& mesh, const Points& points, PartUnit unit, const ParallelFor& parallel)
+  const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
 {
   const Groups triangles = GroupTriangles(mesh, parallel);
   std::vector<SurfacePart> parts;
-  PartBuilder small(mesh, points, unit);
-  PartBuilder large(mesh, points, PartUnit::Common);
+  PartBuilder small(mesh, points, true);
+  PartBuilder large(mesh, points, false);
   for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
     const Index count = triangles.Begin[c + 1] - triangles.Begin[c];

@@ -13,16 +13,10 @@ namespace SurfaceDiffusion
 struct SurfacePart
 {
   std::vector<Index> Vertices; ///< of the whole surface, per row of Places
-  Points Places; ///< of the vertices, from a vertex of their component, in Units
-  Vector Units; ///< per row of Places, in the unit of the whole surface
+  Points Places; ///< of the vertices, from a vertex of their component
   Triangles Faces; ///< rows of Places, oriented by OrientTriangles()
-};
-
-/// How the lengths of components that share a part compare.
-enum class PartUnit
-{
-  Common, ///< the unit of the whole surface
-  OwnEdges ///< the mean edge length of each component
+  Index Components = 0;
+  bool IsCoarse = false; ///< each of them has too few vertices for statistics
 };
 
 /// Divide a surface into its connected components. Those with less than 200 vertices, too few for
@@ -33,7 +27,7 @@ enum class PartUnit
 /// the order of their neighbours.
 ///
 /// points: per vertex of the mesh.
-std::vector<SurfacePart> DivideSurface(const TriangleMesh& mesh, const Points& points,
-  PartUnit unit, const ParallelFor& parallel = SerialFor());
+std::vector<SurfacePart> DivideSurface(
+  const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion

@@ -140,7 +140,7 @@ bool HasOrientation(const Points& points, const Triangles& triangles, Index t)
   return 2.0 * Area(points, triangles, t) > SmallestHeight * longest;
 }
 
-void OrientTriangles(const Points& points, Triangles& triangles)
+void OrientTriangles(const Points& points, Triangles& triangles, std::vector<char>* onOneSide)
 {
   const Neighbours neighbours = FindNeighbours(triangles);
   std::vector<Turn> turns(neighbours.size(), Turn::Unknown);
@@ -164,6 +164,23 @@ void OrientTriangles(const Points& points, Triangles& triangles)
     for (const Index t : patch)
     {
       keptArea += (turns[t] == Turn::Kept ? 1.0 : -1.0) * Area(points, triangles, t);
+    }
+    const auto isAcross = [&](Index t)
+    {
+      return std::any_of(neighbours[t].begin(), neighbours[t].end(),
+        [&](const Neighbour& other)
+        {
+          return other.Triangle >= 0 && isOriented[other.Triangle] &&
+            TurnBeside(turns[t], other) != turns[other.Triangle];
+        });
+    };
+    if (onOneSide && std::any_of(patch.begin(), patch.end(), isAcross))
+    {
+      onOneSide->resize(neighbours.size(), 0);
+      for (const Index t : patch)
+      {
+        (*onOneSide)[t] = 1;
+      }
     }
     if (keptArea < 0.0)
     {

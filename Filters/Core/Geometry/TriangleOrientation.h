@@ -4,6 +4,8 @@
 
 #include "Core/Foundation/Types.h"
 
+#include <vector>
+
 namespace SurfaceDiffusion
 {
 
@@ -16,8 +18,10 @@ namespace SurfaceDiffusion
 /// connect no others, and follow their neighbours: such triangles join the seams of many parametric
 /// surfaces, with orientations at random.
 ///
-/// points: rows that the triangles refer to.
-void OrientTriangles(const Points& points, Triangles& triangles);
+/// points: rows that the triangles refer to. onOneSide: not null: per triangle, nonzero on surfaces
+/// with one side; no entries if there are none.
+void OrientTriangles(
+  const Points& points, Triangles& triangles, std::vector<char>* onOneSide = nullptr);
 
 /// Whether two corners of triangle t are one point, as merging leaves it: it has no edges.
 bool IsCollapsed(const Triangles& triangles, Index t);

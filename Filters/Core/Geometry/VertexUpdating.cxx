@@ -7,7 +7,6 @@
 #include "Core/Solvers/SolverChoice.h"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -24,6 +23,38 @@ namespace
 
 using Row3 = Eigen::RowVector3d;
 
+/// N of UpdateVerticesFromNormals() in triangle t. n: its normal.
+Row3 TargetNormal(
+  const TriangleMesh& mesh, Index t, const Row3& n, const PointData& before, const Values& after)
+{
+  Eigen::Matrix3d old;
+  Eigen::Matrix3d now;
+  bool isKnown = true;
+  for (int a = 0; a < 3; ++a)
+  {
+    const Index i = mesh.TriangleVertices()(t, a);
+    old.row(a) = before.Start.row(i);
+    now.row(a) = after.row(i);
+    isKnown = isKnown && !before.Missing[i];
+    // The orientation of triangles and the signs of lines do not matter.
+    old.row(a) *= old.row(a).dot(n) < 0.0 ? -1.0 : 1.0;
+    now.row(a) *= now.row(a).dot(old.row(a)) < 0.0 ? -1.0 : 1.0;
+  }
+  const Row3 oldMean = old.colwise().mean();
+  const Row3 mean = now.colwise().mean();
+  const double oldSpread = (old.rowwise() - oldMean).norm();
+  const double spread = (now.rowwise() - mean).norm();
+  const double rest = !isKnown ? 0.0 : spread < oldSpread ? spread / oldSpread : 1.0;
+  const Row3 from = oldMean.stableNormalized();
+  const Row3 to = mean.stableNormalized();
+  // The smallest rotation that takes one mean to the other, of the rest
+  const Row3 axis = from.cross(to);
+  const Row3 apart = n - from;
+  const Row3 turned =
+    apart + axis.cross(apart) + axis.cross(axis.cross(apart)) / (1.0 + from.dot(to));
+  return (to + rest * turned).stableNormalized();
+}
+
 /// The matrix of the fit, K_N + M/range^2, applied without being stored. Its 3 x 3 diagonal blocks
 /// precondition the conjugate gradients.
 class NormalFit : public SystemDefaults
@@ -31,28 +62,16 @@ class NormalFit : public SystemDefaults
 public:
   static constexpr bool IsCoupled = true;
 
+  /// normals: per triangle.
   NormalFit(
-    const TriangleMesh& mesh, const Values& normals, double range, const ParallelFor& parallel)
+    const TriangleMesh& mesh, const Points& normals, double range, const ParallelFor& parallel)
     : Mesh(mesh)
     , Parallel(parallel)
     , Coefficients(CotanWeights(mesh, parallel))
-    , Normals(mesh.NumberOfTriangles(), 3)
+    , Normals(normals)
     , Pull(mesh.ControlAreas() / (range * range))
     , InverseBlocks(mesh.NumberOfVertices())
   {
-    ForEach(parallel, mesh.NumberOfTriangles(),
-      [&](Index t)
-      {
-        Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
-        for (int a = 0; a < 3; ++a)
-        {
-          const Row3 u = normals.row(mesh.TriangleVertices()(t, a));
-          tensor += u.transpose() * u; // no sign: the orientation of triangles does not matter
-        }
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
-        axes.computeDirect(tensor);
-        this->Normals.row(t) = axes.eigenvectors().col(2).transpose();
-      });
     ForEach(parallel, mesh.NumberOfVertices(),
       [&](Index i)
       {
@@ -204,7 +223,7 @@ private:
   const TriangleMesh& Mesh;
   const ParallelFor& Parallel;
   CornerWeights Coefficients;
-  Points Normals; ///< per triangle
+  const Points& Normals; ///< per triangle
   Vector Pull;
   std::vector<Eigen::Matrix3d> InverseBlocks;
 };
@@ -239,8 +258,9 @@ double EnclosedVolume(
 }
 
 Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
-  const Values& normals, double range, VertexMotion& motion, const IterationLimits& limits,
-  bool factorize, const ParallelFor& parallel, const ProgressMonitor& progress)
+  const PointData& before, const Values& after, double range, VertexMotion& motion,
+  const IterationLimits& limits, bool factorize, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
 {
   const Index n = mesh.NumberOfVertices();
   Points moved = points;
@@ -255,10 +275,22 @@ Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<cons
   Values start(n, 3);
   ForEach(parallel, n,
     [&](Index i) { start.row(i) = (points.row(mesh.InputVertex()[i]) - origin) / unit; });
-  const NormalFit fit(mesh, normals, range / unit, parallel);
-  SolveReport report;
-  const Values step = fit.Solve(start, limits, factorize, report, progress);
-  motion.MissedResidual = report.Converged ? 0.0 : report.Residual;
+  Values step = Values::Zero(n, 3);
+  if (before.Missing.any() || before.Start != after)
+  {
+    Points normals(mesh.NumberOfTriangles(), 3);
+    ForEach(parallel, mesh.NumberOfTriangles(),
+      [&](Index t)
+      {
+        const auto corner = [&](int a) { return start.row(mesh.TriangleVertices()(t, a)); };
+        const Row3 normal = Row3(corner(1) - corner(0)).cross(Row3(corner(2) - corner(0)));
+        normals.row(t) = TargetNormal(mesh, t, normal.stableNormalized(), before, after);
+      });
+    const NormalFit fit(mesh, normals, range / unit, parallel);
+    SolveReport report;
+    step = fit.Solve(start, limits, factorize, report, progress);
+    motion.MissedResidual = report.Converged ? 0.0 : report.Residual;
+  }
   for (Index i = 0; i < n; ++i)
   {
     moved.row(mesh.InputVertex()[i]) += unit * step.row(i);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Solvers/LinearSolver.h"
+#include "Core/Surface/PointData.h"
 #include "Core/Surface/TriangleMesh.h"
 
 namespace SurfaceDiffusion
@@ -25,20 +26,26 @@ struct VertexMotion
 double EnclosedVolume(
   const TriangleMesh& mesh, const Eigen::Ref<const Points>& points, const ParallelFor& parallel);
 
-/// Vertex updating: move the vertices of a surface so that the triangle normals match given
-/// normals, the second half of denoising a mesh by its normals. x minimises
+/// Vertex updating: move the vertices of a surface so that its triangles turn as vectors at the
+/// vertices have turned, the second half of denoising a mesh by its normals. x minimises
 ///   1/2 int |grad(N . x)|^2 + 1/(2 range^2) int |x - x_0|^2,
-/// for x linear on each triangle and N constant on it, the main axis of the sum of u u^T over the
-/// unit vectors u at its corners. The first integral vanishes if every triangle is orthogonal to
-/// its N. `range`, in coordinate units, is the length over which shapes may adapt: features wider
-/// than `range` are preserved.
+/// for x linear on each triangle and N constant on it. The first integral vanishes if every triangle
+/// is orthogonal to its N. `range`, in coordinate units, is the length over which shapes may adapt:
+/// features wider than `range` are preserved.
 ///
-/// points: those that the mesh was made from; normals: n x 3 unit vectors, per mesh vertex. Points
-/// that are not vertices of the mesh stay. The linear system is solved by conjugate gradients;
-/// factorize: whether a factorisation follows if they do not converge. Throws Aborted,
-/// NotConverged.
+/// N has the direction of m + r R (n - m_0), with the normal n of the triangle, the directions m_0 and
+/// m of the means of the vectors at its corners before and after, the smallest rotation R from m_0 to
+/// m, and the ratio r of the deviations of the vectors from their means, at most 1. So what a triangle has beside its corners' mean, noise or the shape of a coarse
+/// surface, becomes less as the vectors become alike, and vectors that have not changed move no
+/// point. Where vectors before are missing, r = 0.
+///
+/// points: those that the mesh was made from; before: unit vectors in Start, Missing where they are
+/// not known, per mesh vertex; after: n x 3 unit vectors. Signs of vectors and the orientation of
+/// triangles do not matter. Points that are not vertices of the mesh stay. The linear system is
+/// solved by conjugate gradients; factorize: whether a factorisation follows if they do not
+/// converge. Throws Aborted, NotConverged.
 Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
-  const Values& normals, double range, VertexMotion& motion,
+  const PointData& before, const Values& after, double range, VertexMotion& motion,
   const IterationLimits& limits = IterationLimits(), bool factorize = true,
   const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 

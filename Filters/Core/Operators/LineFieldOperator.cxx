@@ -36,7 +36,7 @@ Eigen::Matrix2d LineFieldOperator::Transport::Matrix() const
 
 LineFieldOperator::LineFieldOperator(std::shared_ptr<const TriangleMesh> mesh)
   : Surface(std::move(mesh))
-  , Medial(MedialMesh(*this->Surface).Edges())
+  , Medial(MedialMesh(*this->Surface, true).Edges())
 {
   this->MakeTransports();
   this->AssembleMatrices();

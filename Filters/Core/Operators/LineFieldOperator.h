@@ -23,7 +23,8 @@ namespace SurfaceDiffusion
 /// There is one z per edge, linear on each triangle and compared within triangles only, which are
 /// flat: there is no transport around vertices, and energies are exact on any triangles (O. Stein,
 /// M. Wardetzky, A. Jacobson, E. Grinspun, A Simple Discretization of the Vector Dirichlet Energy,
-/// Computer Graphics Forum 39(5), 2020).
+/// Computer Graphics Forum 39(5), 2020). Where three or more triangles meet in an edge, a line has no
+/// one continuation: the sheets end there.
 class LineFieldOperator
 {
 public:

@@ -84,13 +84,47 @@ std::vector<Index> ComponentOfEdges(const Triangles& corners, Index edgeCount)
   return connected.Labels();
 }
 
+/// Give each triangle of an edge of three or more an edge of its own: the first one this edge, the others
+/// new ones at the end of the list.
+void SplitJunctions(std::vector<Edge>& edges, Triangles& corners)
+{
+  constexpr Index taken = -1;
+  std::vector<Index> uses(edges.size(), 0);
+  for (const auto& opposite : corners.rowwise())
+  {
+    for (const Index e : opposite)
+    {
+      ++uses[e];
+    }
+  }
+  for (auto&& opposite : corners.rowwise())
+  {
+    for (Index& e : opposite)
+    {
+      if (uses[e] > 2)
+      {
+        uses[e] = taken;
+      }
+      else if (uses[e] == taken)
+      {
+        edges.push_back(Edge(edges[e]));
+        e = static_cast<Index>(edges.size()) - 1;
+      }
+    }
+  }
+}
+
 } // namespace
 
-MedialMesh::MedialMesh(const TriangleMesh& mesh)
+MedialMesh::MedialMesh(const TriangleMesh& mesh, bool splitsJunctions)
 {
-  const std::vector<Edge> edges = ListEdges(mesh);
+  std::vector<Edge> edges = ListEdges(mesh);
+  Triangles corners = OppositeEdges(mesh, edges);
+  if (splitsJunctions)
+  {
+    SplitJunctions(edges, corners);
+  }
   const auto edgeCount = static_cast<Index>(edges.size());
-  const Triangles corners = OppositeEdges(mesh, edges);
   const std::vector<Index> component = ComponentOfEdges(corners, edgeCount);
 
   // Edges of a component become consecutive and keep their order.

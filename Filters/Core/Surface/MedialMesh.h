@@ -24,7 +24,8 @@ namespace SurfaceDiffusion
 class MedialMesh
 {
 public:
-  explicit MedialMesh(const TriangleMesh& mesh);
+  /// splitsJunctions: whether each triangle of an edge of three or more has a vertex of its own there.
+  explicit MedialMesh(const TriangleMesh& mesh, bool splitsJunctions = false);
 
   /// Triangle t lies in triangle t of the surface, its corner a on the edge opposite corner a. The
   /// two have the same axes up to sign, so that tangent vectors are the same on both.

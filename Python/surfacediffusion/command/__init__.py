@@ -17,8 +17,10 @@ import sys
 from .._threads import set_number_of_threads
 from ..files import FileError
 from .arguments import parse
+from .common import PROGRAM
 from .inputs import ArgumentProblem, check_files
 from .report import Report
+from .signals import ended_by_signals
 
 
 def main(argv=None) -> int:
@@ -28,6 +30,14 @@ def main(argv=None) -> int:
         arguments = parse(argv)
     except SystemExit as finished:  # --help and --version; argparse's own errors
         return int(finished.code or 0)
+    except ArgumentProblem as error:
+        print(f"{PROGRAM}: {error}", file=sys.stderr)
+        return 2
+    with ended_by_signals():
+        return _run(arguments)
+
+
+def _run(arguments):
     report = Report(arguments)
     try:
         if arguments.threads is not None:
@@ -37,8 +47,8 @@ def main(argv=None) -> int:
             arguments.run(arguments, report)
     except (FileError, ArgumentProblem, ValueError) as error:
         return report.fail(error, 2)
-    except KeyboardInterrupt:
-        return report.fail("interrupted", 1)
+    except KeyboardInterrupt as interruption:
+        return report.fail(str(interruption) or "interrupted", 1)
     except MemoryError:
         return report.fail("out of memory", 1)
     except (ArithmeticError, RuntimeError, OSError) as error:

@@ -8,6 +8,7 @@ import os
 
 from .._threads import get_number_of_threads, set_number_of_threads
 from .inputs import ArgumentProblem, read_surfaces
+from .signals import ended_by_signals
 
 
 def run(arguments, report, work):
@@ -70,9 +71,16 @@ def _run_in_processes(arguments, report, work, pairs):
     threads = max(1, get_number_of_threads() // jobs)
     # New processes, since threads of this one would be lost in a fork.
     context = multiprocessing.get_context("spawn")
+    others = multiprocessing.active_children()
     with concurrent.futures.ProcessPoolExecutor(jobs, mp_context=context) as pool:
-        tasks = [pool.submit(_run_part, arguments, work, pairs[i::jobs], threads) for i in range(jobs)]
-        parts = [task.result() for task in tasks]
+        try:
+            tasks = [pool.submit(_run_part, arguments, work, pairs[i::jobs], threads) for i in range(jobs)]
+            parts = [task.result() for task in tasks]
+        except KeyboardInterrupt:
+            for process in multiprocessing.active_children():
+                if process not in others:
+                    process.terminate()
+            raise
     for part in parts:
         for text in part["warnings"]:
             if text not in report.warnings:
@@ -99,7 +107,7 @@ def _run_part(arguments, work, pairs, threads):
     arguments = _changed(arguments, quiet=True, jobs=1)
     report = Report(arguments)
     files, error = [], None
-    with report.collecting_warnings():
+    with ended_by_signals(), report.collecting_warnings():
         read_surfaces(arguments)
         try:
             for facts in _one_by_one(arguments, report, work, pairs):

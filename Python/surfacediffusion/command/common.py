@@ -19,11 +19,11 @@ SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface",
 ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "faces": False, "areas": None,
           "match_columns": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
 
-SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK polydata."
+SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK."
 
 #: The formats of new data at the vertices
-NEW_FORMATS = (".func.gii, .shape.gii, .mgh, .mgz, .npy, .txt for one column, or .ply, .vtk, .vtp if SURFACE is "
-               "such a file")
+NEW_FORMATS = (".func.gii, .shape.gii, .mgh, .mgz, .npy, .txt for one column, or .ply, .vtk, .vtp, .vtu if SURFACE "
+               "is such a file")
 
 
 def paragraph(text, width):
@@ -148,7 +148,7 @@ def data_to_data(parser, text="the result"):
 def faces(parser):
     parser.add_argument("--faces", action="store_true",
                         help="DATA, and all other files of data, have values at the faces: "
-                             "GIFTI, .mgh, .npy with one row per face, or VTK polydata with cell "
+                             "GIFTI, .mgh, .npy with one row per face, or VTK with cell "
                              "arrays. So has OUTPUT")
 
 

@@ -123,6 +123,7 @@ def add_normals(commands):
                         help="1 keeps creases (default), 2 smooths evenly")
     common.positive(parser, "--time-step", "T", "in natural units")
     common.steps(parser)
+    common.merge(parser)
 
 
 def normals(arguments, report):
@@ -131,7 +132,8 @@ def normals(arguments, report):
         check_output_name(arguments.output, surface.kind)
     else:
         target = new_data(surface, arguments.output, ["nx", "ny", "nz"])
-    options = given(time_step=arguments.time_step, number_of_time_steps=arguments.steps)
+    options = given(time_step=arguments.time_step, number_of_time_steps=arguments.steps,
+                    **common.merging(arguments))
     with report.working("Normals") as progress:
         result = harmonic_map(solid(surface), exponent=arguments.exponent, move_vertices=arguments.move,
                               progress=progress, **options)

@@ -7,7 +7,6 @@ import numpy as np
 
 from .. import conduction_velocity, nearest_sources
 from .. import derivatives as derive
-from .. import distance as measure
 from ..files import FileError, new_data
 from ..files.content import read_content
 from . import common, inputs, values
@@ -35,9 +34,11 @@ def add_distance(commands):
     common.output(parser, "the distances, values at the vertices")
     parser.add_argument("--from", dest="starts", metavar="PLACE", action="append", type=values.place,
                         help="in place of SOURCES: the number of a vertex, from 0, or x,y,z, which "
-                             "stands for the nearest vertex; may be given several times")
-    parser.add_argument("--method", choices=("eikonal", "heat"), default="eikonal",
-                        help="eikonal: fast marching (default); heat: the heat method, which is smooth "
+                             "stands for the nearest place of the surface; may be given several times")
+    parser.add_argument("--method", choices=("automatic", "exact", "eikonal", "heat"), default="automatic",
+                        help="automatic: exact where it takes at most a second, without --speed, and "
+                             "eikonal otherwise (default); exact: the lengths of the shortest ways over "
+                             "the faces; eikonal: fast marching; heat: the heat method, which is smooth "
                              "where ways meet")
     parser.add_argument("--speed", metavar="FILE",
                         help="the speed of fronts at the vertices, 0 or more; faces of speed 0 are "
@@ -52,9 +53,9 @@ def distance(arguments, report):
         raise inputs.ArgumentProblem("the sources are " + (
             "missing" if arguments.starts is None else "both SOURCES and --from")
             + "; allowed: one of SOURCES and --from")
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, lengths=True)
     with report.timed("read"):
-        sets, numbers, names = _read_sources(arguments, surface, report)
+        sets, numbers, names = _read_sources(arguments, surface)
         speed = None
         if arguments.speed is not None:
             speed = inputs.read_values(arguments.speed, surface, tables=False)[1][:, 0]
@@ -62,17 +63,14 @@ def distance(arguments, report):
     nearest = arguments.nearest and new_data(surface, arguments.nearest, names)
     solver = solid(surface)
     with report.working("Distance") as progress:
-        found = np.column_stack([
-            measure(solver, rows, speed=speed, method=arguments.method.capitalize(), progress=progress)
-            for rows in sets])
-        if nearest:
-            labels = np.zeros_like(found)
-            for column, rows, given in zip(labels.T, sets, numbers):
-                first = nearest_sources(solver, rows, speed=speed).source
-                column[:] = np.where(first < 0, 0, given[first])
+        results = [nearest_sources(solver, places, speed=speed, method=arguments.method, progress=progress)
+                   for places in sets]
+        found = np.column_stack([result.distance for result in results])
+        labels = np.column_stack([np.where(result.source < 0, 0, given[result.source])
+                                  for result, given in zip(results, numbers)])
     reached = np.isfinite(found)
     report.facts.update(
-        method=arguments.method, columns=[
+        method=results[0].method.lower(), columns=[
             {"name": name, "sources": len(rows), "unreached": int((~column).sum()),
              "maximum": number(times[column].max())}
             for name, rows, times, column in zip(names, sets, found.T, reached.T)])
@@ -81,28 +79,20 @@ def distance(arguments, report):
         nearest.save(arguments.nearest, [labels.astype(np.float32)])
 
 
-def _nearest_vertex(points, place, report):
-    gaps = np.linalg.norm(points - place, axis=1)
-    size = np.linalg.norm(np.ptp(points, axis=0))
-    if gaps.min() > 0.25 * size:
-        report.warn(f"--from {','.join(f'{x:g}' for x in place)} is {gaps.min():.4g} from the surface, which is "
-                    f"{size:.4g} large (its unit or origin may be another)")
-    return int(np.argmin(gaps))
-
-
-def _read_sources(arguments, surface, report):
-    """The vertices of each set of sources, the number that each of them stands for, and the names of the
-    columns."""
+def _read_sources(arguments, surface):
+    """The vertices or coordinates of each set of sources, the number that each of them stands for, and the
+    names of the columns."""
     count = len(surface.points)
     if arguments.starts is not None:
-        rows = []
-        for place in arguments.starts:
-            if isinstance(place, int) and place >= count:
+        are_vertices = [isinstance(place, int) for place in arguments.starts]
+        for place, is_vertex in zip(arguments.starts, are_vertices):
+            if is_vertex and place >= count:
                 raise inputs.ArgumentProblem(f"--from is {place}; allowed: 0 to {count - 1}, the "
                                              f"vertices of {surface.path}, or x,y,z")
-            rows.append(place if isinstance(place, int) else _nearest_vertex(surface.points, place, report))
-        found, places = np.unique(rows, return_index=True)
-        return [found], [places + 1], ["distance"]
+        places = arguments.starts if all(are_vertices) else [
+            surface.points[place] if is_vertex else place
+            for place, is_vertex in zip(arguments.starts, are_vertices)]
+        return [np.array(places)], [np.arange(1, len(places) + 1)], ["distance"]
     content = read_content(arguments.sources)
     _, columns, names = inputs.read_values(content, surface, tables=False)
     if content.kind == "label":  # whose values may be anything, and mostly are 0
@@ -130,14 +120,15 @@ def add_derivatives(commands):
                         choices=("gradient", "divergence", "curl", "laplacian", "velocity"),
                         help="what to compute (default: gradient); velocity: grad T/|grad T|^2")
     common.fwhm(parser, " that smooths DATA first", "0")
+    common.merge(parser)
 
 
 def derivatives(arguments, report):
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, lengths=True)
     with report.timed("read"):
         _, data, names = inputs.read_values(arguments.data, surface, tables=False)
     word = arguments.quantity.capitalize()
-    options = {"on_faces": False, "smoothing_fwhm": arguments.fwhm}
+    options = {"on_faces": False, "smoothing_fwhm": arguments.fwhm, **common.merging(arguments)}
     with report.working(word) as progress:
         solver = solid(surface)
         if arguments.quantity == "velocity":

@@ -35,7 +35,7 @@ def add_random_field(commands):
 def random_field(arguments, report):
     if arguments.fwhm is not None and arguments.nu != 1:
         raise inputs.ArgumentProblem("--nu with --fwhm; allowed: --nu with --range")
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, lengths=True)
     target = _target(arguments, surface, "field")
     with report.working("Fields") as progress:
         solver = inputs.make_solver(arguments, surface, None)

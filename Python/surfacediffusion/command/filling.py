@@ -81,10 +81,11 @@ def add_interpolate(commands):
     parser.add_argument("--error", metavar="FILE",
                         help="write the standard error of the map, which is large where nothing was "
                              "measured, in one of the formats of OUTPUT")
+    common.merge(parser)
 
 
 def interpolate(arguments, report):
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, lengths=True)
     if arguments.error is not None:
         check_output_folder(arguments.error)
     with report.timed("read"):
@@ -99,7 +100,8 @@ def interpolate(arguments, report):
             solid(surface), values, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
             correlation_length=arguments.length or 0.0, boundary="Free" if arguments.free else "Natural",
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
-            compute_error=errors is not None, progress=progress, **given(smoothing=arguments.smoothing))
+            compute_error=errors is not None, progress=progress, **given(smoothing=arguments.smoothing),
+            **common.merging(arguments))
     rows = zip(result.smoothing, result.misfit, result.degrees_of_freedom, result.noise_level)
     report.facts.update(
         values=result.number_of_values, far_values=result.number_of_far_values,

@@ -20,23 +20,32 @@ def add_info(commands):
 def info(arguments, report):
     entries = report.facts.setdefault("files", [])
     for path in arguments.files:
-        entry = {"file": path}
-        surface_problem = data_problem = None
-        content = read_content(path)
         try:
-            entry.update(_surface_info(read_surface(content)))
-        except FileError as error:
-            surface_problem = error
-        try:
-            entry.update(_data_info(read_data(content)))
-        except FileError as error:
-            data_problem = error
-        if surface_problem and data_problem:
-            raise surface_problem if "has no surface" not in str(surface_problem) else data_problem
-        if surface_problem and "no surface" not in str(surface_problem):
-            report.warn(str(surface_problem))
+            entry = _describe(path, report)
+        except FileError as problem:  # the others are described
+            report.refuse(problem)
+            continue
         entries.append(entry)
         report.say(_info_line(entry))
+
+
+def _describe(path, report):
+    entry = {"file": path}
+    surface_problem = data_problem = None
+    content = read_content(path)
+    try:
+        entry.update(_surface_info(read_surface(content)))
+    except FileError as error:
+        surface_problem = error
+    try:
+        entry.update(_data_info(read_data(content)))
+    except FileError as error:
+        data_problem = error
+    if surface_problem and data_problem:
+        raise surface_problem if "has no surface" not in str(surface_problem) else data_problem
+    if surface_problem and "no surface" not in str(surface_problem):
+        report.warn(str(surface_problem))
+    return entry
 
 
 def _surface_info(surface):

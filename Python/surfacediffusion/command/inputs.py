@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from .._surface import Surface
 from ..files import Data, FileError, Part, SurfaceFile, read_data, read_surface
 from ..files.data import NO_VERTICES
+from ..files.surface import structure_of_name
 
 
 #: The options that name the surface of a structure
@@ -19,7 +21,7 @@ SIDES = {"left": "CortexLeft", "right": "CortexRight", "cerebellum": "Cerebellum
 
 
 #: Where data are written, they are written with their surface, or not at all
-_MESHES = (".ply", ".vtk", ".vtp", ".off", ".obj", ".stl")
+_MESHES = (".ply", ".vtk", ".vtp", ".vtu", ".off", ".obj", ".asc", ".stl")
 
 
 class ArgumentProblem(ValueError):
@@ -95,6 +97,15 @@ def read_surfaces(arguments):
     return arguments.surfaces
 
 
+def lengths_of(surface: SurfaceFile):
+    """The surface, with a warning if lengths on it are none of the brain."""
+    if surface.geometry in ("spherical", "flat", "inflated", "very_inflated", "ellipsoid"):
+        warnings.warn(f"{surface.path} is {surface.geometry.replace('_', ' ')}: lengths and areas on it are not "
+                      "those of the brain; give an anatomical surface, such as white, midthickness or pial",
+                      stacklevel=2)
+    return surface
+
+
 def make_solver(arguments, surface: SurfaceFile, areas):
     """The surface for functions of the package, with the areas that were given for it or None. It is made
     once for many files, and keeps its factors."""
@@ -109,12 +120,12 @@ def make_solver(arguments, surface: SurfaceFile, areas):
 
 def _read_surfaces(arguments):
     if arguments.surface is not None:
-        return {"": read_surface(arguments.surface)}
+        return {"": lengths_of(read_surface(arguments.surface))}
     surfaces = {}
     for side, structure in SIDES.items():
         path = getattr(arguments, side)
         if path is not None:
-            surface = read_surface(path)
+            surface = lengths_of(read_surface(path))
             if surface.structure in SIDES.values() and surface.structure != structure:
                 raise FileError(f"{path}: a surface of {surface.structure}; allowed for --{side}: "
                                 f"{structure}")
@@ -352,6 +363,10 @@ def surface_for(part, surfaces, data):
     if part.structure and surface.structure and part.structure != surface.structure:
         raise FileError(f"{data.path}: data of {part.structure}, but {surface.path} is of "
                         f"{surface.structure}; allowed: the same structure")
+    side = structure_of_name(data.path)
+    if side and not part.structure and surface.structure and side != surface.structure:
+        warnings.warn(f"{data.path} is of {side} by its name, but {surface.path} is of {surface.structure}",
+                      stacklevel=2)
     return surface
 
 
@@ -360,7 +375,7 @@ def on_surface(part, values, surface, data):
     none."""
     path, what = data.path, "faces" if data.on_faces else "points"
     if surface.kind == "stl" and not data.on_faces:
-        raise FileError(f"{path} on {surface.path}: {NO_VERTICES}")
+        raise FileError(f"{path} on {surface.path}: {NO_VERTICES}values at faces, or a surface of another format")
     count = len(surface.faces if data.on_faces else surface.points)
     if part.vertices is None or part.size is not None:
         size = len(part.values) if part.size is None else part.size

@@ -109,6 +109,7 @@ def add_texture(commands):
     kind.add_argument("--kinetics", metavar="NAME",
                       help="the reaction: Turing (default), Schnakenberg, GrayScott, Brusselator, "
                            "GiererMeinhardt or FitzHughNagumo")
+    common.merge(parser)
     common.seed(parser, "of the initial noise")
     common.steps(parser, "largest number of time steps (default 640, for parts to print 2000)")
 
@@ -117,13 +118,15 @@ def texture(arguments, report):
     surface = read_surface_for_output(arguments, report)
     if arguments.relief is None:
         inputs.refuse(arguments, ["--base", "--flank", "--overhang"], "without --relief", "both")
-    if is_for_printing(arguments):
+    if is_for_printing(arguments, surface):
+        inputs.refuse(arguments, ["--merge", "--merge-tolerance"],
+                      "for parts, whose vertices at the same place are one", "for values at the vertices")
         print_texture(arguments, surface, report)
         return
     inputs.refuse(arguments, ["--maximum-triangles"], "for values at the vertices", "for parts")
     target = new_data(surface, arguments.output, ["Texture"])
     size = in_coordinates(arguments.size, arguments.unit)
-    options = given(kinetics=arguments.kinetics, number_of_time_steps=arguments.steps)
+    options = given(kinetics=arguments.kinetics, number_of_time_steps=arguments.steps, **common.merging(arguments))
     if arguments.pattern:
         options.update(reaction_of_pattern(arguments.pattern))
     with report.working("Texture") as progress:

@@ -27,10 +27,11 @@ def reaction_of_pattern(pattern):
     return {"diffusion_rate1": 2.6 * PATTERNS[pattern], "diffusion_rate2": 2.6}
 
 
-def is_for_printing(arguments):
-    """Whether the output of the command texture is a surface, and not values at its vertices."""
+def is_for_printing(arguments, surface):
+    """Whether the output of the command texture is a surface, and not values at its vertices, which PLY
+    has for a PLY file."""
     kind = kind_of_export(arguments.output)
-    return arguments.relief is not None or kind in ("stl", "3mf", "obj", "off")
+    return arguments.relief is not None or kind is not None and (kind != "ply" or surface.kind != "ply")
 
 
 def print_texture(arguments, surface, report):

@@ -57,6 +57,7 @@ class Report:
         self.facts = {"command": arguments.command}
         self.seconds = {}
         self.warnings = []
+        self.problems = []
         self.lines = []
 
     @contextlib.contextmanager
@@ -119,6 +120,13 @@ class Report:
         seconds = sum(entry["wall"] for entry in self.seconds.values())
         self.say(f"{path}: {what}, {seconds:.2f} s")
 
+    def refuse(self, error):
+        """A problem with one of several inputs; the run goes on, and ends as one that failed."""
+        self.problems.append(self._text_of(error))
+
+    def _text_of(self, error):
+        return in_options(" ".join(str(error).split()) or type(error).__name__, self.arguments)
+
     def add_numbers(self, result, *names):
         """Facts from attributes of a result."""
         self.facts.update({name: number(getattr(result, name)) for name in names})
@@ -129,6 +137,8 @@ class Report:
         if self.arguments.json:
             self.facts["seconds"] = self.seconds
             self.facts["warnings"] = self.warnings
+            if self.problems:
+                self.facts["error"] = "; ".join(self.problems)
             lines = [json.dumps(self.facts, indent=2, default=_plain, allow_nan=False)]
         try:
             if getattr(sys.stdout, "errors", None) == "strict":  # names of files may have any characters
@@ -140,10 +150,12 @@ class Report:
             if isinstance(error, BrokenPipeError):
                 return 1
             return self.fail(f"standard output: cannot be written: {error.strerror}", 1)
-        return 0
+        for problem in self.problems:
+            print(f"surfacediffusion: {problem}", file=sys.stderr)
+        return 2 if self.problems else 0
 
     def fail(self, error, code):
-        text = in_options(" ".join(str(error).split()) or type(error).__name__, self.arguments)
+        text = self._text_of(error)
         print(f"surfacediffusion: {text}", file=sys.stderr)
         if self.arguments.json:
             self.facts.update(error=text, warnings=self.warnings)

@@ -19,29 +19,31 @@ def add_directions(commands):
         "directions", directions,
         "Compute a direction on every triangle, for instance of largest curvature.",
         ["lh.pial directions.npy --method CurvatureAligned"],
-        "\nThe directions are a .npy array, one row per face, or cell data of a .vtk or .vtp file "
-        "if SURFACE is\nsuch a file. Their sign has no meaning.\n")
+        "\nThe directions are a .npy array, one row per face, or cell data of a .vtk, .vtp or "
+        ".vtu file if SURFACE is\nsuch a file, 0 at cells that are no faces. Their sign has no meaning.\n")
     common.mesh(parser)
     common.output(parser, "unit vectors, or 0, on the faces")
     parser.add_argument("--method", metavar="NAME", default="PrincipalCurvature",
                         help="PrincipalCurvature (default), CurvatureAligned or Smooth")
+    common.merge(parser)
 
 
 def directions(arguments, report):
     kind = kind_of_name(arguments.output)
     surface = read_surface_for_output(arguments, report)
-    if kind != "npy" and not (kind in ("vtk", "vtp") and kind == surface.kind):
+    if kind != "npy" and not (kind in vtk_files.KINDS and kind == surface.kind):
         raise FileError(f"{arguments.output}: the name announces no format for directions on "
-                        "faces; allowed: .npy, or .vtk or .vtp as the surface")
+                        "faces; allowed: .npy, or .vtk, .vtp or .vtu as the surface")
     with report.working("Directions") as progress:
-        field = direction_field(solid(surface), method=arguments.method, progress=progress)
+        field = direction_field(solid(surface), method=arguments.method, progress=progress,
+                                **common.merging(arguments))
     report.facts.update(method=arguments.method, faces=len(surface.faces))
     with report.timed("write"):
         if kind == "npy":
             write_array(arguments.output, field)
         else:
             write_atomically(arguments.output, vtk_files.write(
-                kind, surface.image, cell_data={"Direction": field}))
+                kind, surface.image, cell_data={"Direction": vtk_files.at_cells(surface.image, field)}))
     report.say_written(arguments.output, f"{len(surface.faces)} directions")
 
 
@@ -60,7 +62,7 @@ def add_curvature(commands):
 
 
 def curvature(arguments, report):
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, lengths=True)
     target = new_data(surface, arguments.output,
                       ["mean", "gaussian", "k1", "k2", "shape_index", "curvedness"])
     with report.working("Curvature") as progress:

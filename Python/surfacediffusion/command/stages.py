@@ -10,8 +10,8 @@ import numpy as np
 
 from .._run import part_of
 from .._surface import Surface
-from ..files import FileError, new_data, read_data, read_surface, write_atomically
-from ..files.content import check_output_folder, kind_of_name
+from ..files import FileError, new_data, read_data, read_surface, vtk_files, write_atomically
+from ..files.content import check_output_folder, check_range, kind_of_name
 from . import common, inputs
 from .inputs import choose_columns, make_patches, read_surfaces
 from .report import counted, number
@@ -110,7 +110,7 @@ def columns_of_arrays(data, columns, patch):
         if data.kind == "ply" and name in colour:
             key = "colour"
         else:
-            key = name if data.kind in ("vtk", "vtp") else i
+            key = name if data.kind in vtk_files.KINDS else i
         groups.setdefault(key, []).append(i)
     return list(groups.values())
 
@@ -148,10 +148,13 @@ def _integrals(areas, values):
 
 # ---- results of one surface ----------------------------------------------------------------------
 
-def read_surface_for_output(arguments, report):
+def read_surface_for_output(arguments, report, lengths=False):
+    """lengths: whether the result is in millimetres."""
     check_output_folder(arguments.output)
     with report.timed("read"):
         surface = read_surface(arguments.surface)
+        if lengths:
+            inputs.lengths_of(surface)
     report.facts.update(surface=arguments.surface, output=arguments.output)
     return surface
 
@@ -168,6 +171,7 @@ def given(**options):
 
 def write_new(arguments, report, target, values):
     """Values at the vertices as new data."""
+    check_range(arguments.output, target.kind, [values], "value", single=True)
     with report.timed("write"):
         target.save(arguments.output, [values.astype(np.float32)])
     report.say_written(arguments.output, counted(len(target.names), "column"))

@@ -10,6 +10,7 @@ import io
 import os
 import shutil
 import tempfile
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -89,7 +90,7 @@ class CiftiFile:
             with open(temporary, "wb") as file:
                 header.write_to(file)
                 offset = int(header["vox_offset"])
-                file.truncate(offset + shape[0] * shape[1] * dtype.itemsize)
+                _allocate(file, offset + shape[0] * shape[1] * dtype.itemsize)
 
             def write(first, places, values):
                 # A map for each call, since its pages count as memory of this process.
@@ -117,8 +118,11 @@ class CiftiFile:
             else:
                 first = cifti2.ScalarAxis(axes[0].name[rows], axes[0].meta[rows])
             metadata = header.matrix.metadata
+            volume = _transformation(header)
             header = cifti2.Cifti2Header.from_axes((first, axes[1]))
             header.matrix.metadata = metadata
+            if volume is not None:
+                _transformation(header).meter_exponent = volume.meter_exponent
         shape = header.matrix.get_data_shape()
         image = cifti2.Cifti2Image(np.broadcast_to(np.float32(0), shape), header, self.image.nifti_header)
         image.nifti_header.set_data_dtype(np.float32)
@@ -152,19 +156,25 @@ def open_cifti(content) -> CiftiFile:
     with reading(content):
         holder = (FileHolder(content.path) if content.partial
                   else FileHolder(fileobj=io.BytesIO(content.bytes)))
-        # Rows are read instead of mapped, since mapped ones stay in memory.
-        image = cifti2.Cifti2Image.from_file_map({"image": holder}, mmap=False)
+        with warnings.catch_warnings():  # of the shape, which is checked below
+            warnings.simplefilter("ignore")
+            # Rows are read instead of mapped, since mapped ones stay in memory.
+            image = cifti2.Cifti2Image.from_file_map({"image": holder}, mmap=False)
         axes = [image.header.get_axis(i) for i in range(image.ndim)]
         if len(axes) != 2 or not isinstance(axes[1], cifti2.BrainModelAxis) or not isinstance(
                 axes[0], (cifti2.ScalarAxis, cifti2.SeriesAxis, cifti2.LabelAxis)):
             kinds = " by ".join(type(axis).__name__.replace("Axis", "") for axis in axes)
             raise content.error(f"a CIFTI file of {kinds}; allowed: dscalar, dtseries")
-        stored = image.dataobj
+        stored, described = image.dataobj, image.header.matrix.get_data_shape()
+        if tuple(stored.shape) != tuple(described):
+            raise ValueError(f"a matrix of {' x '.join(map(str, stored.shape))} values, described as "
+                             f"{' x '.join(map(str, described))}")
         needed = stored.offset + int(np.prod(stored.shape)) * stored.dtype.itemsize
         size = os.path.getsize(content.path) if content.partial else len(content.bytes)
         if size < needed:
             raise ValueError(f"{size} bytes, of {needed} that its header announces")
-        structures = [_structure(axes[1], *entry) for entry in axes[1].iter_structures()]
+        unit = _millimetres(image.header)
+        structures = [_structure(axes[1], unit, *entry) for entry in axes[1].iter_structures()]
     series = isinstance(axes[0], cifti2.SeriesAxis)
     labels = isinstance(axes[0], cifti2.LabelAxis)
     names = [str(i + 1) for i in range(len(axes[0]))] if series else [str(n) for n in axes[0].name]
@@ -182,13 +192,38 @@ def _compress(path):
             shutil.copyfileobj(plain, file)
 
 
-def _structure(axis, name, block, model):
+def _allocate(file, size):
+    """Makes the file as large, with OSError if the disk is full: a map of a file that has no space ends the
+    process."""
+    file.flush()
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(file.fileno(), 0, size)
+        return
+    zeros = bytes(1 << 20)
+    for start in range(file.tell(), size, len(zeros)):
+        file.write(zeros[:size - start])
+
+
+def _transformation(header):
+    """Of the indices of voxels to coordinates; None without voxels."""
+    volume = header.matrix.get_index_map(1).volume
+    return None if volume is None else volume.transformation_matrix_voxel_indices_ijk_to_xyz
+
+
+def _millimetres(header):
+    """The unit of coordinates, which nibabel leaves out."""
+    volume = _transformation(header)
+    return 1.0 if volume is None or volume.meter_exponent is None else 10.0 ** (volume.meter_exponent + 3)
+
+
+def _structure(axis, unit, name, block, model):
     """"CortexLeft" for CIFTI_STRUCTURE_CORTEX_LEFT, as GIFTI has it."""
     place = slice(*block.indices(len(axis))[:2])
     words = name.replace("CIFTI_STRUCTURE_", "").split("_")
     structure = Structure("".join(word.capitalize() for word in words), place)
     if model.volume_mask.any():
-        structure.voxels, structure.affine = np.asarray(model.voxel), np.asarray(model.affine)
+        structure.voxels, structure.affine = np.asarray(model.voxel), np.array(model.affine, dtype=float)
+        structure.affine[:3] *= unit
     else:
         structure.vertices, structure.size = np.asarray(model.vertex), int(axis.nvertices[name])
     return structure

@@ -7,31 +7,36 @@ import contextlib
 import gzip
 import importlib
 import logging
-import math
 import os
 import re
 import stat
 import struct
 import tempfile
+import warnings
 import zlib
 from dataclasses import dataclass
 
+import numpy as np
+
 NAMES = {
     "gifti": "GIFTI", "cifti": "CIFTI", "nifti": "NIfTI", "mgh": "FreeSurfer mgh",
-    "freesurfer": "FreeSurfer surface", "curv": "FreeSurfer curv", "label": "FreeSurfer label",
-    "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY", "stl": "STL", "vtk": "VTK legacy",
-    "vtp": "VTK XML", "npy": "NumPy npy", "text": "text",
+    "freesurfer": "FreeSurfer surface", "asc": "FreeSurfer asc", "curv": "FreeSurfer curv",
+    "label": "FreeSurfer label", "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY",
+    "stl": "STL", "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid", "npy": "NumPy npy", "text": "text",
 }
 
 # The ends of names by which an output that is named like another format, or like none, is noticed.
 EXTENSIONS = {
-    ".gii": "gifti", ".mgh": "mgh", ".mgz": "mgh", ".label": "label", ".off": "off", ".obj": "obj",
-    ".ply": "ply", ".stl": "stl", ".vtk": "vtk", ".vtp": "vtp", ".npy": "npy", ".nii": "nifti",
+    ".gii": "gifti", ".mgh": "mgh", ".mgz": "mgh", ".label": "label", ".asc": "asc", ".off": "off", ".obj": "obj",
+    ".ply": "ply", ".stl": "stl", ".vtk": "vtk", ".vtp": "vtp", ".vtu": "vtu", ".npy": "npy", ".nii": "nifti",
     ".annot": "annot", ".txt": "text",
 }
 
 # Files of FreeSurfer have names such as lh.thickness.fwhm10, whose ends say nothing of the format.
 _NAMED_FREELY = ("curv", "freesurfer")
+
+# What is written in single precision, whatever the input has
+_SINGLE = ("gifti", "cifti", "curv", "mgh", "nifti", "freesurfer", "stl")
 
 # CIFTI names say what the rows are: .dscalar.nii, .dtseries.nii, ...
 _CIFTI_NAME = re.compile(r"\.([dp][a-z]+)\.nii$")
@@ -75,11 +80,31 @@ def read_content(path) -> Content:
             raise FileError(f"{path}: damaged gzip file: {error}") from error
     if not data:
         raise FileError(f"{path}: the file is empty")
-    kind = find_kind(data)
+    kind = find_kind(data) or _stl_with_more(path, data)
     if kind is None:
-        raise FileError(f"{path}: a file of unknown kind that starts with {data[:12]!r}; allowed: "
-                        + ", ".join(NAMES.values()))
+        raise FileError(f"{path}: {_unknown(path, data)}; allowed: " + ", ".join(NAMES.values()))
     return Content(path, data, kind)
+
+
+def _unknown(path, data):
+    """What a file is that has none of the kinds."""
+    if data.startswith(b"PK\3\4"):
+        return "a 3MF file, or another archive of files" if path.lower().endswith(
+            ".3mf") else "an archive of files (zip), as 3MF"
+    if _plain_name(path).endswith((".img", ".hdr")):
+        return "half of a pair of files .hdr and .img"
+    return f"a file of unknown kind that starts with {data[:12]!r}"
+
+
+def _stl_with_more(path, data):
+    """Some programs write more bytes after the triangles than STL has; only the name tells such files from
+    others."""
+    size = _size_of_stl(data)
+    if not _plain_name(path).endswith(".stl") or not 84 < size < len(data) or b"\0" not in data[:84]:
+        return None
+    warnings.warn(f"{path}: {len(data) - size} bytes after the {(size - 84) // 50} triangles of its header are "
+                  "not read", stacklevel=3)
+    return "stl"
 
 
 def _is_cifti_on_disk(file):
@@ -92,21 +117,22 @@ def _is_cifti_on_disk(file):
 
 
 @contextlib.contextmanager
-def on_disk(content):
+def on_disk(data):
     """The path of a temporary file with these bytes, for libraries that read nothing else. The file
-    itself is opened once, in read_content(), because it may be compressed or a pipe."""
+    they are from is opened once, in read_content(), because it may be compressed or a pipe."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "content")
         with open(path, "wb") as file:
-            file.write(content.bytes)
+            file.write(data)
         yield path
 
 
 def find_kind(data: bytes) -> str | None:
     """The kind of a file with this content, a key of NAMES; None if unknown."""
     starts = {
-        b"\xff\xff\xfe": "freesurfer", b"\xff\xff\xfd": "freesurfer", b"\xff\xff\xff": "curv",
-        b"#!ascii label": "label", b"# vtk DataFile": "vtk", b"\x93NUMPY": "npy",
+        b"\xff\xff\xfe": "freesurfer", b"\xff\xff\xfd": "freesurfer",
+        b"\xff\xff\xff": "freesurfer" if _has_quadrangles(data) else "curv",
+        b"#!ascii label": "label", b"#!ascii version of": "asc", b"# vtk DataFile": "vtk", b"\x93NUMPY": "npy",
     }
     for start, kind in starts.items():
         if data.startswith(start):
@@ -123,9 +149,11 @@ def _find_xml_kind(data):
     start = 0
     while (end := prolog.match(data, start).end()) > start:
         start = end
-    for name, kind in ((b"<GIFTI", "gifti"), (b"<VTKFile", "vtp")):
-        if data.startswith(name, start):
-            return kind
+    if data.startswith(b"<GIFTI", start):
+        return "gifti"
+    if data.startswith(b"<VTKFile", start):
+        is_grid = re.compile(rb"<VTKFile\s[^>]*type\s*=\s*[\"']UnstructuredGrid").match(data, start)
+        return "vtu" if is_grid else "vtp"
     return None
 
 
@@ -141,11 +169,11 @@ def _is_cifti(data):
 def _find_binary_kind(data):
     if _is_nifti2(data, "<") or _is_nifti2(data, ">"):
         return "cifti" if _is_cifti(data) else "nifti"
-    if len(data) >= 348 and data[344:347] in (b"n+1", b"ni1"):
+    if len(data) >= 348 and data[344:347] == b"n+1":
         return "nifti"
     if len(data) >= 284 and struct.unpack_from(">i", data)[0] == 1:
         return "mgh"
-    if _is_binary_stl(data):
+    if len(data) == _size_of_stl(data):
         return "stl"
     if len(data) >= 16:  # one pair of numbers per vertex, then the tag of the table of colours
         count = struct.unpack_from(">i", data)[0]
@@ -154,16 +182,16 @@ def _find_binary_kind(data):
     return None
 
 
-def _is_binary_stl(data):
-    """Some programs write more bytes after the triangles than the format has."""
-    if len(data) < 84:
-        return False
-    count = struct.unpack_from("<I", data, 80)[0]
-    size = 84 + 50 * count
-    if len(data) == size:
-        return True
-    return b"\0" in data[:84] and 0 < count and size < len(data) and all(
-        math.isfinite(value) for value in struct.unpack_from("<12f", data, 84))
+def _size_of_stl(data):
+    """The bytes of a binary STL file with the number of triangles in the header."""
+    return 84 + 50 * struct.unpack_from("<I", data, 80)[0] if len(data) >= 84 else 0
+
+
+def _has_quadrangles(data):
+    """Old surfaces of FreeSurfer start as curv files, with numbers of three bytes: of the vertices, three
+    short integers each, and of the quadrangles, four numbers of vertices each."""
+    vertices, faces = (int.from_bytes(data[place:place + 3], "big") for place in (3, 6))
+    return len(data) == 9 + 6 * vertices + 12 * faces
 
 
 def _find_text_kind(data):
@@ -205,8 +233,23 @@ def reading(content):
     except FileError:
         raise
     except Exception as error:
-        reason = " ".join(str(error).split()) or type(error).__name__
+        reason = _in_plain_words(" ".join(str(error).split()), error)
         raise content.error(f"damaged {content.name} file: {reason[:200]}") from error
+
+
+def _in_plain_words(text, error):
+    """What Python and numpy say of words that are no numbers, and of files that end early."""
+    if isinstance(error, IndexError):
+        return "it ends too early"
+    if isinstance(error, OverflowError):
+        return "a number is too large"
+    text = re.sub(r"(?:np\.(?:bytes|str)_\()?\bb?('[^']*'|\"[^\"]*\")\)?", r"\1", text)
+    text = re.sub(r"could not convert string(?: to float:)? (.*?)(?: to float\d+ at row .*)?$",
+                  r"\1 is no number", text)
+    text = re.sub(r"invalid literal for int\(\) with base 10: (.*)", r"\1 is no whole number", text)
+    text = re.sub(r"cannot reshape array of size (\d+) into shape \((.*?),?\)",
+                  lambda found: f"{found[1]} numbers for an array of " + found[2].replace(",", " x "), text)
+    return text or type(error).__name__
 
 
 @contextlib.contextmanager
@@ -254,6 +297,13 @@ def check_output_name(path, kind, rows=""):
                         "the format of the input")
 
 
+def check_range(path, kind, arrays, what, single=False):
+    """Raises FileError if the format has no such numbers. single: whether it holds single precision here."""
+    largest = max((np.abs(array).max(initial=0, where=np.isfinite(array)) for array in arrays), default=0)
+    if (single or kind in _SINGLE) and largest > np.finfo(np.float32).max:
+        raise FileError(f"{path}: a {what} is {largest:.3g}; allowed in {NAMES[kind]}: less than 3.4e38")
+
+
 def check_output_folder(path):
     """Finds before a long computation that its result has no place to go."""
     folder = os.path.dirname(os.path.abspath(path))
@@ -297,7 +347,7 @@ def writing_atomically(path):
     temporary = None
     try:
         handle, temporary = tempfile.mkstemp(
-            dir=os.path.dirname(target), prefix="." + os.path.basename(target) + ".")
+            dir=os.path.dirname(target), prefix="." + os.path.basename(target)[:40] + ".")
         with open(handle, "rb") as file:
             yield temporary
             os.fsync(file.fileno())

@@ -13,18 +13,14 @@ import numpy as np
 
 from . import freesurfer_data, gifti_data, ply, vtk_files
 from .cifti import open_cifti
-from .content import Content, check_output_name, kind_of_name, read_content, reading
-from .content import NAMES, FileError, write_atomically
+from .content import NAMES, Content, FileError, check_output_name, check_range, kind_of_name
+from .content import read_content, reading, write_atomically
 
 ALLOWED = ("GIFTI (.func.gii, .shape.gii, .label.gii), CIFTI (.dscalar.nii, .dtseries.nii), "
-           "FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), PLY, VTK polydata, NumPy (.npy), "
+           "FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), PLY, VTK, NumPy (.npy), "
            "text with one number per line (.txt)")
 
-#: The formats that are written in single precision
-_SINGLE = ("gifti", "cifti", "curv", "mgh", "nifti")
-
-NO_VERTICES = ("an STL file numbers no vertices, so that values at vertices belong to none; allowed: "
-               "values at faces, or a surface of another format")
+NO_VERTICES = "an STL file numbers no vertices, so that values at vertices belong to none; allowed: "
 
 
 @dataclass
@@ -93,12 +89,6 @@ class Data:
         """Raises FileError if the name of an output announces another format."""
         check_output_name(path, self.kind, self.rows)
 
-    def _check_size(self, path, values):
-        """Raises FileError if the format, which has single precision, has no such numbers."""
-        largest = max((np.abs(new).max(initial=0, where=np.isfinite(new)) for new in values), default=0)
-        if self.kind in _SINGLE and largest > np.finfo(np.float32).max:
-            raise FileError(f"{path}: a value is {largest:.3g}; allowed in {NAMES[self.kind]}: less than 3.4e38")
-
     def save(self, path, values, columns=None):
         """Write other values in the same format, with the metadata of the file.
 
@@ -116,7 +106,7 @@ class Data:
             raise FileError(f"{path}: values cannot be written as {NAMES[self.kind]}, the format of "
                             f"{self.path}; allowed: formats of values")
         self.check_name(path)
-        self._check_size(path, values)
+        check_range(path, self.kind, values, "value")
         columns = list(range(len(self.names))) if columns is None else list(columns)
         for part, new in zip(self.parts, values):
             if np.shape(new) != (len(part.values), len(columns)):
@@ -135,12 +125,12 @@ def read_data(path, on_faces=False) -> Data:
     known = _FORMATS.get(content.kind)
     if on_faces and not (known and known.on_faces):
         raise content.error(f"a {content.name} file, which has no data at faces; allowed: GIFTI, "
-                            ".mgh, .mgz, .nii.gz, .npy, .txt, VTK polydata")
+                            ".mgh, .mgz, .nii.gz, .npy, .txt, VTK")
     if known is None:
         raise content.error(f"a {content.name} file, which has no data at vertices; "
                             f"allowed: {ALLOWED}")
     with reading(content):
-        data = (_read_vtk(content, on_faces) if content.kind in ("vtk", "vtp")
+        data = (_read_vtk(content, on_faces) if content.kind in vtk_files.KINDS
                 else known.read(content))
         data.on_faces = on_faces
         if not data.names or not data.parts:
@@ -159,18 +149,18 @@ def new_data(surface, path, names) -> Data:
     output announces; without an extension, FreeSurfer's curv for one column."""
     values = np.zeros((len(surface.points), len(names)), dtype=np.float32)
     if surface.kind == "stl":
-        raise FileError(f"{surface.path}: {NO_VERTICES}")
+        raise FileError(f"{surface.path}: {NO_VERTICES}a surface of another format")
     kind = kind_of_name(path)
     if kind is None and surface.kind == "freesurfer" and len(names) == 1:
         kind = "curv"
-    if kind in ("ply", "vtk", "vtp") and kind == surface.kind:
+    if kind in ("ply", *vtk_files.KINDS) and kind == surface.kind:
         usual = list(range(len(names)))
         return Data(surface.path, kind, list(names), [Part(values)], usual=usual,
                     image=(surface.image, [(name, 0) for name in names]))
     make = _FORMATS[kind].new if kind in _FORMATS else None
     if make is None or (kind == "text" and len(names) > 1):
         allowed = ".func.gii, .shape.gii, .mgh, .mgz, .npy" + ", .txt" * (len(names) == 1)
-        if surface.kind in ("ply", "vtk", "vtp"):
+        if surface.kind in ("ply", *vtk_files.KINDS):
             allowed += f", .{surface.kind} as the surface"
         raise FileError(f"{path}: the name announces no format for {len(names)} column(s) at "
                         f"vertices; allowed: {allowed}")
@@ -338,8 +328,8 @@ def _read_ply(content):
 
 def _read_vtk(content, on_faces=False):
     mesh = vtk_files.read(content)
-    if on_faces and mesh.GetNumberOfPolys() != mesh.GetNumberOfCells():
-        raise content.error(f"{mesh.GetNumberOfCells()} cells, of which {mesh.GetNumberOfPolys()} are "
+    if on_faces and len(vtk_files.cells_of_faces(mesh)) != mesh.GetNumberOfCells():
+        raise content.error(f"{mesh.GetNumberOfCells()} cells, of which {len(vtk_files.cells_of_faces(mesh))} are "
                             "polygons; allowed for data at faces: polygons alone")
     attributes = mesh.GetCellData() if on_faces else mesh.GetPointData()
     arrays = vtk_files.arrays_of(attributes)
@@ -410,4 +400,5 @@ _FORMATS = {
     "ply": _Format(_read_ply, _write_ply),
     "vtk": _Format(_read_vtk, _write_vtk, on_faces=True),
     "vtp": _Format(_read_vtk, _write_vtk, on_faces=True),
+    "vtu": _Format(_read_vtk, _write_vtk, on_faces=True),
 }

@@ -10,7 +10,7 @@ import zipfile
 
 import numpy as np
 
-from .content import FileError, write_atomically
+from .content import FileError, check_range, write_atomically
 
 #: The units of coordinates, in millimetres, and their names in 3MF.
 UNITS = {"um": (0.001, "micron"), "mm": (1.0, "millimeter"), "cm": (10.0, "centimeter"),
@@ -32,6 +32,7 @@ def export(path, points, triangles, colors=None, unit="mm"):
     if kind is None:
         raise FileError(f"{path}: the name announces no format of surfaces; allowed: "
                         + ", ".join("." + known for known in _WRITERS))
+    check_range(path, kind, [points], "coordinate")
     write_atomically(path, _WRITERS[kind](np.asarray(points, dtype=float),
                                           np.asarray(triangles), colors, unit))
 

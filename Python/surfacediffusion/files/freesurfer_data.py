@@ -40,7 +40,7 @@ def read_volume(content):
         image = import_reader("nibabel.freesurfer", content).MGHImage.from_bytes(content.bytes)
     else:
         nibabel = import_reader("nibabel", content)
-        single = content.bytes[344:346] == b"n+" or content.bytes[344:346] == b"ni"
+        single = content.bytes[344:346] == b"n+"
         image = (nibabel.Nifti1Image if single else nibabel.Nifti2Image).from_bytes(content.bytes)
     values = np.asanyarray(image.dataobj)
     shape = (*values.shape, 1, 1)
@@ -104,7 +104,7 @@ def write_label(values, lines):
 def read_annot(content):
     """The number of the label of each vertex (n,), -1 for none, and {number: name}."""
     freesurfer = import_reader("nibabel.freesurfer", content)
-    with on_disk(content) as path:
+    with on_disk(content.bytes) as path:
         labels, _, names = freesurfer.read_annot(path)
     return labels.astype(np.int64), {i: name.decode("utf-8", "replace")
                                      for i, name in enumerate(names)}

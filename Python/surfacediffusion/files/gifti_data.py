@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import io
 import os
+import re
 
 import numpy as np
 
@@ -14,7 +15,9 @@ from .content import import_reader
 _SURFACE_INTENTS = (1008, 1009)  # NIFTI_INTENT_POINTSET, NIFTI_INTENT_TRIANGLE
 _LABEL_INTENT = 1002
 _INDEX_INTENT = 2002  # NIFTI_INTENT_NODE_INDEX
-_EXTERNAL, _BASE64_GZIP = 4, 3
+_ASCII, _BASE64_GZIP, _EXTERNAL = 1, 3, 4
+_ROWS_FIRST = 1
+_INT32, _FLOAT32 = 8, 16
 
 
 def read_image(content):
@@ -25,13 +28,19 @@ def read_image(content):
 
     class Parser(GiftiImageParser):
         def StartElementHandler(self, name, attrs):
-            other = attrs.get("ExternalFileName", "")
+            if name == "DataArray":
+                _check_dimensions(attrs)
+                if attrs.get("Encoding") == "ExternalFileBinary":
+                    self.check_file(attrs.get("ExternalFileName", ""))
+            super().StartElementHandler(name, attrs)
+
+        @staticmethod
+        def check_file(other):
             if os.path.basename(other) != other:
                 raise content.error(f"data in the file {other}; allowed: in the folder of the GIFTI "
                                     "file")
-            if other and not os.path.isfile(os.path.join(os.path.dirname(file.name), other)):
+            if not os.path.isfile(os.path.join(os.path.dirname(file.name), other)):
                 raise content.error(f"there is no file {other} with its data in the same folder")
-            super().StartElementHandler(name, attrs)
 
     file = io.BytesIO(content.bytes)
     file.name = os.path.abspath(content.path)  # in whose folder the parser looks
@@ -40,8 +49,26 @@ def read_image(content):
     for array in parser.img.darrays:
         if array.encoding == _EXTERNAL:
             array.data = np.array(array.data)
-            array.encoding, array.ext_fname, array.ext_offset = _BASE64_GZIP, "", 0
+        if array.encoding in (_ASCII, _EXTERNAL):  # nibabel writes text with six digits, and by rows always
+            array.encoding, array.ind_ord = _BASE64_GZIP, _ROWS_FIRST
+        array.ext_fname, array.ext_offset = "", 0  # or a name that nothing reads
+        # Other types are read, but GIFTI has three, and nibabel writes no others.
+        kind = array.data.dtype.kind if array.data is not None else ""
+        if kind == "f":
+            array.datatype = _FLOAT32
+        elif kind in "iu" and kind and array.data.dtype != np.uint8 and (
+                array.data.size == 0 or -2**31 <= array.data.min() <= array.data.max() < 2**31):
+            array.datatype = _INT32
     return parser.img
+
+
+def _check_dimensions(attributes):
+    """nibabel counts to any number."""
+    count = attributes.get("Dimensionality", "0")
+    sizes = [attributes.get(f"Dim{i}", "") for i in range(int(count) if re.fullmatch("[1-6]", count) else 0)]
+    if not sizes or not all(re.fullmatch(r"\d{1,15}", size) for size in sizes):
+        raise ValueError(f"an array of Dimensionality {count[:20]!r} with sizes {', '.join(sizes)[:60] or 'none'}"
+                         "; allowed: 1 to 6, and a size for each")
 
 
 def read(content):
@@ -108,7 +135,7 @@ def write(image, places, values):
         data = np.asarray(values)[:, chosen].astype(np.float32)
         array.data = data[:, 0] if image.darrays[i].data.ndim == 1 else data
         array.dims = list(array.data.shape)
-        array.datatype = 16  # NIFTI_TYPE_FLOAT32
+        array.datatype = _FLOAT32
         changed.darrays.append(array)
     return changed.to_bytes()
 

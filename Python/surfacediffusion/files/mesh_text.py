@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""OFF and OBJ files, which are lines of text. Everything but coordinates and normals is written as it
-was read. Lines are split as bytes: their text may be UTF-8 or anything else, and str.splitlines()
-splits within some of its characters."""
+"""OFF and OBJ files and those of FreeSurfer named .asc, which are lines of text. Everything but coordinates
+and normals is written as it was read. Lines are split as bytes: their text may be UTF-8 or anything else,
+and str.splitlines() splits within some of its characters."""
 from __future__ import annotations
 
 import re
@@ -218,5 +218,30 @@ def _has_other_normals(face):
                for corner in corners)
 
 
+# ---- asc: a comment, the two counts, and lines of x y z flag and of a b c flag ------------------------
+
+def _asc_lines(data):
+    lines = [line.decode("latin-1") for line in data.splitlines(keepends=True)]
+    vertices, faces = (int(word) for word in lines[1].split())
+    if min(vertices, faces) < 0 or len(lines) < 2 + vertices + faces:
+        raise ValueError(f"{vertices} vertices and {faces} faces are announced, but {len(lines) - 2} lines follow")
+    return lines, vertices, faces
+
+
+def read_asc(data: bytes):
+    lines, vertices, faces = _asc_lines(data)
+    points = _numbers([line.split()[:3] for line in lines[2:2 + vertices]], "a vertex").reshape(-1, 3)
+    rows = [[int(word) for word in line.split()[:3]] for line in lines[2 + vertices:2 + vertices + faces]]
+    return points, rows
+
+
+def write_asc(data: bytes, points, normals):
+    lines, vertices, _ = _asc_lines(data)
+    for i, row in enumerate(np.asarray(points, float).tolist()):
+        flag = re.search(r"[^\s]*\s*$", lines[2 + i])[0]
+        lines[2 + i] = _text_of(row) + " " + flag
+    return "".join(lines).encode("latin-1"), ""
+
+
 #: The reader and the writer of each kind of file.
-FORMATS = {"off": (read_off, write_off), "obj": (read_obj, write_obj)}
+FORMATS = {"off": (read_off, write_off), "obj": (read_obj, write_obj), "asc": (read_asc, write_asc)}

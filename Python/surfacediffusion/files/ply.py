@@ -52,7 +52,10 @@ class Ply:
         return np.column_stack([self.vertices[axis] for axis in "xyz"])
 
     def write(self, columns) -> bytes:
-        """The file with these columns {name: values} of the vertices; new ones come last."""
+        """The file with these columns {name: values} of the vertices; new ones come last, and have names
+        without spaces, which end a name in the header."""
+        columns = {name if name in self.vertices else re.sub(r"\s+", "_", name.strip()) or "value": values
+                   for name, values in columns.items()}
         new = [name for name in columns if name not in self.vertices]
         header = b"".join(self._header_with({name: columns[name] for name in new}))
         whole = {**self.vertices, **{name: np.asarray(v) for name, v in columns.items()}}
@@ -268,7 +271,8 @@ class _TextReader:
         if any(len(row) != len(element.properties) for row in rows):
             raise ValueError(f"a line of the element {element.name} does not have "
                              f"{len(element.properties)} numbers")
-        values = np.array([[float(word) for word in row] for row in rows]).reshape(len(rows), -1)
+        values = np.array([[float(word) for word in row] for row in rows]).reshape(
+            len(rows), len(element.properties))
         return {p.name: _as_type(values[:, i], p) for i, p in enumerate(element.properties)}
 
     def lists(self, element, wanted):

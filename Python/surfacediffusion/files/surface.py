@@ -3,19 +3,23 @@
 """Reads and writes surfaces: read_surface() and SurfaceFile."""
 from __future__ import annotations
 
+import os
 import tempfile
 import warnings
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from . import gifti_data, mesh_text, ply, stl, vtk_files
-from .content import Content, check_output_name, import_reader, on_disk, read_content, reading
+from .content import Content, check_output_name, check_range, import_reader, on_disk, read_content, reading
 from .content import write_atomically
 
-ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, VTK polydata"
+ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, VTK"
+
+#: What the names of FreeSurfer's files say
+_SHAPES = {"inflated": "inflated", "sphere": "spherical", "flat": "flat"}
 
 
 @dataclass
@@ -40,6 +44,17 @@ class SurfaceFile:
     structure: str = ""
     image: Any = field(default=None, repr=False)  # what the reader returned
 
+    @property
+    def geometry(self):
+        """What the file or its name says of the shape: "anatomical", "inflated", "spherical", "flat", ...; empty
+        if they say nothing."""
+        if self.kind == "gifti":
+            points = self.image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")[0]
+            return (points.meta.get("GeometricType") or "").lower()
+        words = os.path.basename(self.path).lower().split(".") if self.kind in ("freesurfer", "asc") else []
+        found = [shape for word, shape in _SHAPES.items() if word in words[1:]]
+        return found[0] if found else ""
+
     def save(self, path, points):
         """Write the surface with other points (n, 3) in the same format. The normals in the file do
         not belong to these: returns "computed again" or "left out", or "" if it has none."""
@@ -47,6 +62,7 @@ class SurfaceFile:
         points = np.asarray(points)
         if points.shape != self.points.shape:
             raise ValueError(f"points have shape {points.shape}; allowed: {self.points.shape}")
+        check_range(path, self.kind, [points], "coordinate")
         _, write = _FORMATS[self.kind]
         data, normals = write(self, points)
         write_atomically(path, data)
@@ -56,8 +72,6 @@ class SurfaceFile:
 def read_surface(path) -> SurfaceFile:
     """Read a surface from a file of one of the formats in ALLOWED, or from its Content."""
     content = path if isinstance(path, Content) else read_content(path)
-    if content.kind == "curv" and _is_quad_surface(content):
-        content = replace(content, kind="freesurfer")
     if content.kind not in _FORMATS:
         raise content.error(f"a {content.name} file, which has no surface; allowed: {ALLOWED}")
     with reading(content):
@@ -103,12 +117,6 @@ def _check(content, surface):
         raise content.error(f"point {bad} is {points[bad].tolist()}; allowed: finite coordinates")
 
 
-def _is_quad_surface(content):
-    """Quadrangle surfaces have the magic number of curv files, but other sizes."""
-    count = int.from_bytes(content.bytes[3:7], "big")
-    return len(content.bytes) != 15 + 4 * count and len(content.bytes) > 15 + 4 * count
-
-
 # ---- GIFTI ---------------------------------------------------------------------------------------
 
 def _read_gifti(content):
@@ -152,15 +160,19 @@ def _write_gifti(surface, points):
 
 def _read_freesurfer(content):
     freesurfer = import_reader("nibabel.freesurfer", content)
+    if not content.bytes.startswith(b"\xff\xff\xfe"):
+        warnings.warn(f"{content.path}: quadrangles, which are read, and written, as two triangles each",
+                      stacklevel=4)
     # nibabel warns about files without a footer, which are allowed.
-    with warnings.catch_warnings(), on_disk(content) as path:
+    with warnings.catch_warnings(), on_disk(content.bytes) as path:
         warnings.simplefilter("ignore")
         points, faces, info = freesurfer.read_geometry(path, read_metadata=True)
     return SurfaceFile(content.path, content.kind, points, faces.astype(np.int64),
-                       _freesurfer_structure(content.path), info)
+                       structure_of_name(content.path), info)
 
 
-def _freesurfer_structure(path):
+def structure_of_name(path):
+    """As FreeSurfer names files: "CortexLeft" of lh.white; empty for other names."""
     name = path.replace("\\", "/").rsplit("/", maxsplit=1)[-1]
     return {"lh": "CortexLeft", "rh": "CortexRight"}.get(name.split(".")[0], "")
 
@@ -181,7 +193,8 @@ def _write_freesurfer(surface, points):
 def _read_text(content):
     read, _ = mesh_text.FORMATS[content.kind]
     points, faces = read(content.bytes)
-    return SurfaceFile(content.path, content.kind, points, faces, image=content.bytes)
+    structure = structure_of_name(content.path) if content.kind == "asc" else ""
+    return SurfaceFile(content.path, content.kind, points, faces, structure, content.bytes)
 
 
 def _write_text(surface, points):
@@ -204,7 +217,10 @@ def _write_ply(surface, points):
 
 
 def _read_stl(content):
-    points, faces = stl.read(content.bytes)
+    points, faces, apart = stl.read(content.bytes)
+    if apart:
+        warnings.warn(f"{content.path}: corners of facets up to {apart:.2g} apart, at open edges, are joined, "
+                      "since STL files are rounded", stacklevel=4)
     return SurfaceFile(content.path, content.kind, points, faces, image=content.bytes)
 
 
@@ -215,9 +231,6 @@ def _write_stl(surface, points):
 
 def _read_vtk(content):
     mesh = vtk_files.read(content)
-    if mesh.GetNumberOfStrips():
-        raise content.error("triangle strips; allowed: polygons, which ParaView's filter Triangulate makes of "
-                            "strips")
     points, faces = vtk_files.points_and_faces(mesh)
     return SurfaceFile(content.path, content.kind, points, faces, image=mesh)
 
@@ -233,10 +246,12 @@ def _write_vtk(surface, points):
 _FORMATS = {
     "gifti": (_read_gifti, _write_gifti),
     "freesurfer": (_read_freesurfer, _write_freesurfer),
+    "asc": (_read_text, _write_text),
     "off": (_read_text, _write_text),
     "obj": (_read_text, _write_text),
     "ply": (_read_ply, _write_ply),
     "stl": (_read_stl, _write_stl),
     "vtk": (_read_vtk, _write_vtk),
     "vtp": (_read_vtk, _write_vtk),
+    "vtu": (_read_vtk, _write_vtk),
 }

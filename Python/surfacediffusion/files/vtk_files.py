@@ -1,30 +1,47 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Polydata of VTK, legacy and XML, through VTK's own readers. The package vtk is imported for such files
-only."""
+"""Polydata and unstructured grids of VTK, legacy and XML, through VTK's own readers. The package vtk is
+imported for such files only."""
 from __future__ import annotations
 
-import base64
+import contextlib
 import re
+from xml.sax.saxutils import escape
 
 import numpy as np
 
 from .content import import_reader, on_disk
+from .vtk_checks import check_legacy, check_xml
+
+#: The kinds of files of this module
+KINDS = ("vtk", "vtp", "vtu")
+
+#: Cells of a grid that are faces, and those that are points and lines
+_FACES, _PIXEL, _THINNER = (5, 7, 8, 9), 8, (0, 1, 2, 3, 4, 21)
 
 
 def read(content):
-    """The vtkPolyData of the file."""
-    core = import_reader("vtkmodules.vtkCommonCore", content)
-    if content.kind == "vtp":
-        from vtkmodules.vtkIOXML import vtkXMLPolyDataReader as Reader
-
-        if b"PolyData" not in content.bytes[:4096]:
-            raise content.error("a VTK XML file of another type; allowed: PolyData")
-        _check_sizes(content.bytes)
+    """The vtkPolyData or vtkUnstructuredGrid of the file. Strips of triangles are triangles then."""
+    import_reader("vtkmodules.vtkCommonCore", content)
+    if content.kind == "vtk":
+        mesh = _read(content, f"legacy {check_legacy(content.bytes)}", content.bytes)
     else:
-        from vtkmodules.vtkIOLegacy import vtkPolyDataReader as Reader
+        kind = check_xml(content.bytes, lambda kind, data: _read(content, kind, data))
+        if kind not in ("PolyData", "UnstructuredGrid"):
+            raise content.error(f"a VTK XML file of {kind or 'no type'}; allowed: PolyData, UnstructuredGrid")
+        mesh = _read(content, kind, content.bytes)
+    return _without_strips(mesh) if mesh.IsA("vtkPolyData") and mesh.GetNumberOfStrips() else mesh
 
-        _check_version(content.bytes)
+
+def _read(content, kind, data):
+    """The object of VTK that `data` are, in the format and of the type `kind`."""
+    from vtkmodules import vtkCommonCore as core
+    from vtkmodules import vtkIOLegacy, vtkIOXML
+
+    reader = {"legacy polydata": vtkIOLegacy.vtkPolyDataReader,
+              "legacy unstructured_grid": vtkIOLegacy.vtkUnstructuredGridReader,
+              "PolyData": vtkIOXML.vtkXMLPolyDataReader,
+              "UnstructuredGrid": vtkIOXML.vtkXMLUnstructuredGridReader}[kind]()
     # Errors of readers and of their parsers go to the output window, and to a log on standard error.
     before = core.vtkOutputWindow.GetInstance()
     verbosity = core.vtkLogger.GetCurrentVerbosityCutoff()
@@ -32,14 +49,15 @@ def read(content):
     core.vtkOutputWindow.SetInstance(window)
     core.vtkLogger.SetStderrVerbosity(core.vtkLogger.VERBOSITY_OFF)
     try:
-        reader = Reader()
         if content.kind == "vtk":
             reader.ReadAllScalarsOn()
             reader.ReadAllVectorsOn()
             reader.ReadAllNormalsOn()
+            reader.ReadAllTensorsOn()
+            reader.ReadAllTCoordsOn()
             reader.ReadAllFieldsOn()
             reader.ReadAllColorScalarsOn()
-        with on_disk(content) as path:
+        with on_disk(data) as path:
             reader.SetFileName(path)
             reader.Update()
         problems = window.GetOutput()
@@ -49,51 +67,56 @@ def read(content):
     # "ERROR: In file, line n", then "class (address): text" or text. Truncated files give a generic
     # warning that begins with "Error"; other warnings are not in the way of the data.
     entries = re.split(r"(ERROR|(?:Generic )?Warning): In .*\s", problems)
-    for kind, text in zip(entries[1::2], entries[2::2]):
+    for level, text in zip(entries[1::2], entries[2::2]):
         text = re.sub(r"^\s*\w+ \(\w+\): ", "", text)
-        if kind == "ERROR" or text.startswith("Error"):
+        if level == "ERROR" or text.startswith("Error"):
             raise ValueError(text.replace(path, content.path))
     return reader.GetOutput()
 
 
-def _check_version(data):
-    """Raises ValueError if cells are not as the version in the first line has them: VTK would read beyond
-    its memory."""
-    version = re.match(rb"# vtk DataFile Version (\d)\.\d\s", data)
-    if version is None:
-        raise ValueError(f"the version in the first line is {data[23:33]!r}; allowed: 1.0 to 5.1")
-    for cells in re.finditer(rb"\n(?:VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS)[ \t]+\d+[ \t]+\d+\s*\n"
-                             rb"(OFFSETS)?", data):
-        if (cells[1] is not None) != (version[1] >= b"5"):
-            raise ValueError(f"cells of another version than {version[1].decode()}, that of the first line")
+def _rows(cells):
+    """The corners of each cell of a vtkCellArray: (m, k) if all have k, otherwise lists."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    offsets = vtk_to_numpy(cells.GetOffsetsArray()).astype(np.int64)
+    corners = vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)
+    sizes = np.diff(offsets)
+    if len(sizes) and (sizes < 0).any() or len(offsets) and not 0 <= offsets[-1] <= len(corners):
+        raise ValueError(f"the offsets of cells do not ascend to {len(corners)}")
+    if len(sizes) and (sizes == sizes[0]).all():
+        return corners.reshape(len(sizes), -1)
+    return [corners[a:b].tolist() for a, b in zip(offsets[:-1], offsets[1:])]
 
 
-def _check_sizes(data):
-    """Raises ValueError if an array announces more bytes than the file can hold: VTK would allocate them,
-    and end the process where it cannot."""
-    root = re.search(rb"<VTKFile\b[^>]*>", data)
-    if root is None:
-        return
-    number = np.dtype("u8" if b'"UInt64"' in root[0] else "u4").newbyteorder(
-        ">" if b'"BigEndian"' in root[0] else "<")
-    compressed = b"compressor=" in root[0]
-    appended = re.search(rb"<AppendedData\b[^>]*>\s*_", data)
-    for array in re.finditer(rb"<DataArray\b[^>]*>", data[:appended.start() if appended else None]):
-        offset = re.search(rb'offset="\s*\+?(\d{1,18})', array[0])  # digits count up to another character
-        if b'"binary"' in array[0]:
-            start, raw = array.end(), False
-        elif b'"appended"' in array[0] and offset and appended:
-            start, raw = appended.end() + int(offset[1]), b'"raw"' in appended[0]
-        else:
-            continue
-        count = number.itemsize * (2 if compressed else 1)
-        start += 0 if raw else len(data[start:start + 100]) - len(data[start:start + 100].lstrip())
-        head = data[start:start + (count if raw else (count + 2) // 3 * 4)]
-        sizes = np.frombuffer((head if raw else base64.b64decode(head))[:count], number).tolist()
-        # Blocks of a compressed array have a length each, and zlib packs a thousand bytes in one.
-        if sizes and (sizes[0] > len(data) or np.prod(sizes, dtype=float) > 10000.0 * len(data)):
-            raise ValueError(f"an array announces {' blocks of '.join(map(str, sizes))} bytes, the file has "
-                             f"{len(data)}")
+def _without_strips(mesh):
+    """The triangles of strips as polygons, each with the data of its strip."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonCore import vtkIdList
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+    changed, polygons, cells = vtkPolyData(), vtkCellArray(), vtkIdList()
+    changed.ShallowCopy(mesh)
+    polygons.DeepCopy(mesh.GetPolys())
+    first = mesh.GetNumberOfCells() - mesh.GetNumberOfStrips()
+    origins = list(range(first))
+    for number, strip in enumerate(_rows(mesh.GetStrips())):
+        for k in range(len(strip) - 2):
+            polygons.InsertNextCell(3, [int(strip[k + 1 * (k % 2)]), int(strip[k + 1 - k % 2]), int(strip[k + 2])])
+            origins.append(first + number)
+    changed.SetPolys(polygons)
+    changed.SetStrips(vtkCellArray())
+    for origin in origins:
+        cells.InsertNextId(origin)
+    data = changed.GetCellData()
+    for i in range(data.GetNumberOfArrays()):
+        given = mesh.GetCellData().GetAbstractArray(i)
+        array = given.NewInstance()
+        array.SetName(given.GetName())
+        array.SetNumberOfComponents(given.GetNumberOfComponents())
+        array.SetNumberOfTuples(len(origins))
+        given.GetTuples(cells, array)
+        data.AddArray(array)  # in place of that of the same name
+    return changed
 
 
 def points_and_faces(mesh):
@@ -102,21 +125,57 @@ def points_and_faces(mesh):
     if mesh.GetNumberOfPoints() == 0:
         return np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
     points = vtk_to_numpy(mesh.GetPoints().GetData())
-    polygons = mesh.GetPolys()
-    offsets = vtk_to_numpy(polygons.GetOffsetsArray())
-    corners = vtk_to_numpy(polygons.GetConnectivityArray()).astype(np.int64)
-    if len(offsets) > 1 and (np.diff(offsets) == 3).all():
-        return points, corners.reshape(-1, 3)
-    return points, [corners[a:b].tolist() for a, b in zip(offsets[:-1], offsets[1:])]
+    if mesh.IsA("vtkPolyData"):
+        return points, _rows(mesh.GetPolys())
+    rows, types = _rows(mesh.GetCells()), _cell_types(mesh)
+    others = set(types.tolist()) - {*_FACES, *_THINNER}
+    if others:
+        raise ValueError(f"cells of VTK's type {min(others)}; allowed: triangles (5), polygons (7), pixels (8) "
+                         "and quadrilaterals (9), which ParaView's filter Extract Surface makes of others")
+    if isinstance(rows, np.ndarray) and (types != _PIXEL).all():
+        return points, rows[np.isin(types, _FACES)]
+    faces = [list(rows[i]) for i in np.flatnonzero(np.isin(types, _FACES))]
+    for i, kind in enumerate(types[np.isin(types, _FACES)]):
+        if kind == _PIXEL:
+            faces[i][2:] = faces[i][:1:-1]
+    return points, faces
+
+
+def _cell_types(grid):
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    if grid.GetNumberOfCells() == 0:
+        return np.zeros(0, np.uint8)
+    try:
+        return vtk_to_numpy(grid.GetCellTypes())
+    except TypeError:  # before VTK 9.6
+        return vtk_to_numpy(grid.GetCellTypesArray())
+
+
+def cells_of_faces(mesh):
+    """The number of the cell that each face is."""
+    if mesh.IsA("vtkPolyData"):
+        return mesh.GetNumberOfVerts() + mesh.GetNumberOfLines() + np.arange(mesh.GetNumberOfPolys())
+    return np.flatnonzero(np.isin(_cell_types(mesh), _FACES))
+
+
+def at_cells(mesh, values):
+    """A row for each cell: those of `values` at faces, 0 at vertices and lines."""
+    rows = np.zeros((mesh.GetNumberOfCells(), *np.shape(values)[1:]), np.asarray(values).dtype)
+    rows[cells_of_faces(mesh)] = values
+    return rows
 
 
 def arrays_of(data):
     """{name: array} of the numeric arrays among the attributes of points or cells."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
-    return {array.GetName() or f"array{i}": vtk_to_numpy(array)
-            for i, array in enumerate(arrays) if array is not None}
+    found = {}
+    for i, array in enumerate(map(data.GetArray, range(data.GetNumberOfArrays()))):
+        if array is not None:
+            with contextlib.suppress(AssertionError):  # bits, before VTK 9.3
+                found[array.GetName() or f"array{i}"] = vtk_to_numpy(array)
+    return found
 
 
 def numbers_of(data):
@@ -153,11 +212,8 @@ def write(kind, mesh, points=None, point_data=None, cell_data=None) -> bytes:
     array."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
-    from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-    changed = vtkPolyData()
+    changed = mesh.NewInstance()
     changed.ShallowCopy(mesh)
     if points is not None:
         moved = vtkPoints()
@@ -172,14 +228,43 @@ def write(kind, mesh, points=None, point_data=None, cell_data=None) -> bytes:
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
             array.SetName(name)
             attributes.AddArray(array)
-    writer = vtkXMLPolyDataWriter() if kind == "vtp" else vtkPolyDataWriter()
-    writer.SetInputData(changed)
+    return _bytes_of(changed) if kind == "vtk" else _xml_of(changed)
+
+
+def _bytes_of(mesh):
+    from vtkmodules import vtkIOLegacy
+
+    writer = (vtkIOLegacy.vtkPolyDataWriter() if mesh.IsA("vtkPolyData")
+              else vtkIOLegacy.vtkUnstructuredGridWriter())
+    writer.SetInputData(mesh)
     writer.WriteToOutputStringOn()
-    if kind == "vtp":
-        writer.SetDataModeToBinary()
-        writer.Write()
-        return writer.GetOutputString().encode()
     writer.SetFileTypeToBinary()
     writer.Write()
     return writer.GetOutputStdString() if isinstance(
         writer.GetOutputStdString(), bytes) else bytes(writer.GetBinaryOutputString())
+
+
+def _xml_of(mesh):
+    from vtkmodules import vtkIOXML
+
+    writer = (vtkIOXML.vtkXMLPolyDataWriter() if mesh.IsA("vtkPolyData")
+              else vtkIOXML.vtkXMLUnstructuredGridWriter())
+    writer.SetInputData(mesh)
+    writer.WriteToOutputStringOn()
+    writer.SetDataModeToBinary()  # which all versions of VTK and ParaView read
+    writer.Write()
+    text = writer.GetOutputString()
+    # VTK writes names as they are, with signs that end an attribute or begin an entity.
+    for name in _names(mesh):
+        escaped = escape(name, {'"': "&quot;", "\n": "&#10;", "\t": "&#9;"})
+        if escaped != name:
+            text = text.replace(f'="{name}"', f'="{escaped}"')
+    return text.encode()
+
+
+def _names(mesh):
+    """Those of all arrays and of their components."""
+    for data in (mesh.GetPointData(), mesh.GetCellData(), mesh.GetFieldData()):
+        for array in map(data.GetAbstractArray, range(data.GetNumberOfArrays())):
+            for name in (array.GetName(), *map(array.GetComponentName, range(array.GetNumberOfComponents()))):
+                yield name or ""

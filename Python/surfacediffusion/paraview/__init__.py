@@ -7,8 +7,7 @@ In ParaView, Tools > Manage Plugins > Load New takes the file SurfaceDiffusionPy
 in a script it is ``LoadPlugin(path)``. The file finds the package beside it if the Python of ParaView
 does not have it. The filters have the names, properties, panels, defaults and results of the plugin in
 C++: the proxies are those of its XML files, and the numerics are the same. ParaView has to run in one
-process, and a surface has to be in one piece. After an error, filters behind the one that failed work on
-its input, silently, until a property of it is changed.
+process, and a surface has to be in one piece.
 """
 
 from __future__ import annotations

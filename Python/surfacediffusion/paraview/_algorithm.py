@@ -15,7 +15,8 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
-from ._fields import BY_INDEX, ArrayFinder, Choice, Fields, join_sentences, make_core
+from ._fields import (
+    BY_INDEX, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement, mean_edge_length
 from ._surfaces import ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure
@@ -84,6 +85,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self._warnings: list[str] = []  # of this class, in the present update
         self._of_surfaces: list[str] = []
         self._quiet = 0  # no observer
+        self._failed_with: list[int] | None = None  # the times of an update that has failed
         choice = self.DEFAULT_CHOICE
         if choice is not None:
             self.SetInputArrayToProcess(
@@ -158,6 +160,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         for extra in made[1:]:
             extra.Initialize()
         parts = copy_structure(self._first_input(inputs), made[0])
+        if self._failed_with == self._find_times(inputs, parts):  # asked for another time or piece
+            self._quiet_executive()
+            return 0
         self.shapes.begin_update()
         refinement = Refinement(self.shapes)
         threads = _core.number_of_threads()
@@ -187,10 +192,16 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                 extra.Initialize()
         if self.GetReleaseDataFlag() or vtkDataObject.GetGlobalReleaseDataFlag():
             self.ReleaseCache()
+        self._failed_with = self._find_times(inputs, parts) if failure else None
         if failure:
             self._report_error(failure)
             return 0
         return 1
+
+    def _find_times(self, inputs: Any, parts: Parts) -> list[int]:
+        """When the filter and its inputs were modified."""
+        given = [block.input for block in parts.blocks] + [self._second_input(inputs)]
+        return [self.GetMTime()] + [data.GetMTime() for data in given if data is not None]
 
     def ReleaseCache(self) -> None:
         """Free what is kept from one update to the next."""
@@ -217,6 +228,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         controller = vtkMultiProcessController.GetGlobalController()
         if controller is not None and controller.GetNumberOfProcesses() > 1:
             return "ParaView runs in several processes; allowed: one (the plugin in C++ works in several)"
+        if parts.in_pieces:
+            disagreement = find_disagreement(self.choices, parts.blocks)
+            if disagreement:
+                return disagreement
         problems = self._check_own()
         given = [block for block in parts.blocks if _has_polygons(block)]
         if given and not problems:

@@ -41,6 +41,13 @@ class Choice:
             return attributes.GetAbstractArray(self.name)
         return attributes.GetAbstractAttribute(self.attribute or vtkDataSetAttributes.SCALARS)
 
+    def locate(self, block: Any) -> tuple[Any, bool]:
+        """The array, or None, and whether it is on cells."""
+        found = None if self.association == CELLS else self.find_in(block.GetPointData())
+        if found is not None or self.association == POINTS:
+            return found, False
+        return self.find_in(block.GetCellData()), True
+
 
 @dataclass
 class Array:
@@ -115,10 +122,7 @@ class ArrayFinder:
             problems.append(f"{label} has association {choice.association}; allowed: points (0) or cells (1)")
             return Array()
         block = self._block
-        found = None if choice.association == CELLS else choice.find_in(block.GetPointData())
-        on_cells = found is None and choice.association != POINTS
-        if on_cells:
-            found = choice.find_in(block.GetCellData())
+        found, on_cells = choice.locate(block)
         if found is None:
             self._fields.absent[index] = (label, f"{label} {self._describe_absence(choice)}")
             return Array()
@@ -133,7 +137,9 @@ class ArrayFinder:
             return Array()
         size = found.GetNumberOfComponents()
         if size < 1 if components == ANY else size != components:
-            problems.append(f"{label} has {size} components; allowed: "
+            unset = "" if choice.name else "is not set, and the active array " + (
+                f'"{found.GetName()}" ' if found.GetName() else "")
+            problems.append(f"{label} {unset}has {size} components; allowed: "
                             + ("1 or more" if components == ANY else str(components)))
             return Array()
         return Array(found, on_cells)
@@ -151,6 +157,24 @@ class ArrayFinder:
         if not on_points and self._block.GetPointData().HasArray(choice.name):
             return text + ", or association 0 for the point array of this name"
         return text
+
+
+def find_disagreement(choices: dict[int, Choice], blocks: list[Block]) -> str:
+    """The error if an array differs from piece to piece of a surface, otherwise empty."""
+    known: dict[tuple[int, int], str] = {}
+    for block in blocks:
+        for index, choice in sorted(choices.items()):
+            found, on_cells = choice.locate(block.input) if choice.is_set else (None, False)
+            if not isinstance(found, vtkDataArray) or block.input.GetNumberOfPoints() == 0:
+                continue
+            size = found.GetNumberOfComponents()
+            text = (f'"{found.GetName() or ""}" ({found.GetDataTypeAsString()}, {size} '
+                    f'component{"" if size == 1 else "s"}, on {"cells" if on_cells else "points"})')
+            first = known.setdefault((block.surface, index), text)
+            if first != text:
+                return (f"the pieces of the input have different arrays, {first} and {text}; allowed: one "
+                        "name, type, number of components and place in all pieces")
+    return ""
 
 
 def settle_absence(fields: list[Fields], names: list[str]) -> tuple[list[str], list[str]]:

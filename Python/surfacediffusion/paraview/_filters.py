@@ -229,13 +229,28 @@ class ModelFilter(SurfaceFilter):
         if inputs[0].GetNumberOfInformationObjects() == 0 or not _core.find_times(self.MODEL, self.settings):
             return 1
         info = inputs[0].GetInformationObject(0)
-        if info.Has(_TIME.TIME_STEPS()) and info.Length(_TIME.TIME_STEPS()) > 0:
-            info.Set(_TIME.UPDATE_TIME_STEP(), info.Get(_TIME.TIME_STEPS())[0])
-        elif info.Has(_TIME.TIME_RANGE()):
-            info.Set(_TIME.UPDATE_TIME_STEP(), info.Get(_TIME.TIME_RANGE())[0])
+        times = self._times_of(info)
+        if times:
+            info.Set(_TIME.UPDATE_TIME_STEP(), times[0])
         else:
             info.Remove(_TIME.UPDATE_TIME_STEP())
         return 1
+
+    @staticmethod
+    def _times_of(info: Any) -> list[float]:
+        """The times of the input, or the first and the last one."""
+        key = _TIME.TIME_STEPS()
+        if not (info.Has(key) and info.Length(key) > 0):
+            key = _TIME.TIME_RANGE()
+        return list(info.Get(key)) if info.Has(key) else []
+
+    def begin(self, inputs: Any) -> None:
+        SurfaceFilter.begin(self, inputs)
+        times = self._times_of(inputs[0].GetInformationObject(0))
+        if times and times[0] != times[-1] and _core.find_times(self.MODEL, self.settings):
+            self._warnings.append(
+                f"GenerateTimeSteps is on and the input has times from {times[0]:g} to {times[-1]:g}: all "
+                f"results are of the input at {times[0]:g}; to follow its times, set GenerateTimeSteps to off")
 
     def _choose_step(self, request: Any, outputs: Any) -> int:
         """The step of the requested time; without one, the last."""

@@ -99,6 +99,8 @@ public:
   /// E, with the p-th power of |grad u| in 1/LengthUnit()^p and areas in LengthUnit()^2.
   double Energy() const override;
 
+  const PointData* GivenData() const override { return &this->Data; }
+
   DiffusionStep Diffusion() const override;
   const CornerWeights& DiffusionWeights(Eigen::Index column) override;
 

@@ -15,9 +15,9 @@ namespace SurfaceDiffusion
 void SmoothInterpolation::FitExactly(
   Work& work, Result& result, const ProgressMonitor& progress) const
 {
-  const ScatteredValues& rows = work.Data.Rows;
+  const ScatteredValues& rows = work.Rows;
   const Eigen::Index columns = rows.Given.cols();
-  Flags held = work.Open;
+  Flags held = work.None;
   Values u = work.Start;
   for (Index i = 0; i < rows.Count(); ++i)
   {
@@ -38,7 +38,7 @@ void SmoothInterpolation::FitExactly(
     const Vector variances = work.Fit.InverseDiagonal(progress.Part(0.8, 0.95)) +
       this->VarianceOfMean(work, held, true, progress.Part(0.95, 0.95)); // without bounds
     const Vector energies = work.Energy.Squares(u);
-    const double free = std::max<double>(1.0, rows.Count() - work.Parts);
+    const double free = std::max<double>(1.0, rows.Count() - 1);
     for (Eigen::Index c = 0; c < columns; ++c)
     {
       const double scale = energies[c] / free;
@@ -48,7 +48,7 @@ void SmoothInterpolation::FitExactly(
       }
       // The energy of values that a function without energy reaches is round-off.
       constexpr double resolved = 1e-12;
-      const bool isKnown = rows.Count() > work.Parts &&
+      const bool isKnown = rows.Count() > 1 &&
         (held.all() || result.Error.col(c).maxCoeff() > resolved * work.SizeOf(c));
       if (!isKnown)
       {
@@ -72,7 +72,6 @@ void SmoothInterpolation::FitExactly(
     const Vector misfit = given - work.Fit.AtPoints(u).col(c);
     found.Residual = std::sqrt(rows.Weights.dot(misfit.cwiseAbs2()) / rows.Weights.sum());
     found.DegreesOfFreedom = rows.Count();
-    found.Roughness = work.Energy.Squares(u.col(c))[0];
   }
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -102,6 +103,46 @@ struct PlaneTriangle
   std::array<double, 3> Angles;
 };
 
+/// An unknown of an edge, in one of its triangles: part of the gradient along an axis.
+struct Unknown
+{
+  int Corner; ///< opposite the edge
+  Index Number;
+  Eigen::RowVector2d Axis;
+  double Share; ///< of the gradient of the triangle in the unknown
+  double Weight = 1.0; ///< of the unknown in the triangle
+};
+
+/// Edges of three or more triangles, whose slopes s_i across them, each into its triangle, become
+/// s_i - c_i S with S their sum and c_i = (1/A_i)/(sum of 1/A). S and s_i are the unknowns.
+struct Junctions
+{
+  Junctions(const TriangleMesh& mesh, const EdgeAxes& edges)
+    : Uses(Vector::Zero(edges.Count))
+    , Smallest(Vector::Constant(edges.Count, std::numeric_limits<double>::max()))
+    , Sums(Vector::Zero(edges.Count))
+  {
+    for (const bool isLast : { false, true })
+    {
+      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+      {
+        const double area = mesh.Shapes()[t].Area();
+        for (const Index e : edges.OfCorner.row(t))
+        {
+          this->Uses[e] += isLast ? 0.0 : 1.0;
+          this->Smallest[e] = std::min(this->Smallest[e], area);
+          this->Sums[e] += isLast ? this->Smallest[e] / area : 0.0;
+        }
+      }
+    }
+  }
+
+  bool Has(Index e) const { return this->Uses[e] > 2.0; }
+  double ShareOfSum(Index e, double area) const { return this->Smallest[e] / area / this->Sums[e]; }
+
+  Vector Uses, Smallest, Sums; ///< per edge: triangles, the least area, the sum of it over areas
+};
+
 } // namespace
 
 HessianEnergy::HessianEnergy(const TriangleMesh& mesh, bool withNegativeCurvature)
@@ -133,52 +174,59 @@ HessianEnergy::HessianEnergy(const TriangleMesh& mesh, bool withNegativeCurvatur
     defects = defects.cwiseMax(0.0).eval();
   }
 
+  const Junctions junctions(mesh, edges);
+  Index count = 2 * edges.Count;
+  std::vector<Unknown> unknowns;
   std::vector<Entry> gradient, energy;
   gradient.reserve(18 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
   energy.reserve(36 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const PlaneTriangle triangle(mesh.Shapes()[t]);
-    // Row 2 a and 2 a + 1: the axes of the edge opposite corner a.
-    Eigen::Matrix<double, 6, 2> axes;
-    std::array<Index, 6> numbers;
+    unknowns.clear();
     for (int a = 0; a < 3; ++a)
     {
-      axes.row(2 * a) = edges.Along(t, a) * triangle.Along.row(a);
-      axes.row(2 * a + 1) = edges.Across(t, a) * triangle.Inward.row(a);
-      numbers[2 * a] = 2 * edges.OfCorner(t, a);
-      numbers[2 * a + 1] = numbers[2 * a] + 1;
+      const Index e = edges.OfCorner(t, a);
+      const double share = third * triangle.Area / masses[e];
+      unknowns.push_back({ a, 2 * e, edges.Along(t, a) * triangle.Along.row(a), share });
+      if (!junctions.Has(e))
+      {
+        unknowns.push_back({ a, 2 * e + 1, edges.Across(t, a) * triangle.Inward.row(a), share });
+        continue;
+      }
+      const double ofSum = junctions.ShareOfSum(e, triangle.Area);
+      unknowns.push_back({ a, 2 * e + 1, triangle.Inward.row(a), 1.0, -ofSum });
+      unknowns.push_back({ a, count++, triangle.Inward.row(a), 1.0 });
     }
-    for (int e = 0; e < 6; ++e)
+    for (const Unknown& e : unknowns)
     {
-      const double share = third * triangle.Area / masses[numbers[e] / 2];
       for (int b = 0; b < 3; ++b)
       {
         gradient.emplace_back(
-          numbers[e], vertices(t, b), share * axes.row(e).dot(triangle.Basis.row(b)));
+          e.Number, vertices(t, b), e.Share * e.Axis.dot(triangle.Basis.row(b)));
       }
     }
-    for (int e = 0; e < 6; ++e)
+    for (const Unknown& e : unknowns)
     {
-      for (int f = 0; f < 6; ++f)
+      for (const Unknown& f : unknowns)
       {
-        const int a = e / 2;
-        const int b = f / 2;
         // The function of an edge is 1 - 2 phi with phi of the opposite corner.
-        double density = 4.0 * triangle.Area * triangle.Basis.row(a).dot(triangle.Basis.row(b));
+        double density =
+          4.0 * triangle.Area * triangle.Basis.row(e.Corner).dot(triangle.Basis.row(f.Corner));
         for (int corner = 0; corner < 3; ++corner)
         {
-          const double sign = (corner == a) == (corner == b) ? 1.0 : -1.0;
+          const double sign = (corner == e.Corner) == (corner == f.Corner) ? 1.0 : -1.0;
           const Index i = vertices(t, corner);
           density += sign * defects[i] * triangle.Angles[corner] / angles[i];
         }
-        energy.emplace_back(numbers[e], numbers[f], density * axes.row(e).dot(axes.row(f)));
+        energy.emplace_back(
+          e.Number, f.Number, density * (e.Weight * e.Axis).dot(f.Weight * f.Axis));
       }
     }
   }
-  this->Gradient.resize(2 * edges.Count, n);
+  this->Gradient.resize(count, n);
   this->Gradient.setFromTriplets(gradient.begin(), gradient.end());
-  this->Energy.resize(2 * edges.Count, 2 * edges.Count);
+  this->Energy.resize(count, count);
   this->Energy.setFromTriplets(energy.begin(), energy.end());
 }
 

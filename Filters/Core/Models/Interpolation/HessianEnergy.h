@@ -15,13 +15,17 @@ namespace SurfaceDiffusion
 /// the mean over the triangles of the edge, in the axes along and across it. E is the vector
 /// Dirichlet energy of these elements, and the angle defects of inner vertices in the corners of
 /// their triangles.
+///
+/// Where three or more triangles meet in an edge, the slopes across it, each into its own triangle,
+/// are those nearest to the gradients, with the areas as weights, whose sum is 0: for two triangles
+/// that is the mean.
 struct HessianEnergy
 {
   /// withNegativeCurvature: as in the equation. On coarse meshes of surfaces with saddles, as in
   /// handles, E may then be indefinite; without negative angle defects it is not.
   explicit HessianEnergy(const TriangleMesh& mesh, bool withNegativeCurvature = true);
 
-  SparseMatrix Gradient; ///< G, 2 per edge x n
+  SparseMatrix Gradient; ///< G, 2 per edge and 1 per triangle of an edge of three or more x n
   SparseMatrix Energy; ///< E
 };
 

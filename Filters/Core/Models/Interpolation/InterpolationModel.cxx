@@ -40,8 +40,7 @@ StepReport InterpolationModel::Advance(const ProgressMonitor& progress)
   this->EnergyOfFit = 0.0;
   for (const SmoothInterpolation::Column& column : this->Last.Columns)
   {
-    this->EnergyOfFit += 0.5 * column.Mu * column.Roughness +
-      0.5 * this->Data.Weights.sum() * column.Residual * column.Residual;
+    this->EnergyOfFit += column.Energy;
   }
   this->IsFitted = true;
   return {};

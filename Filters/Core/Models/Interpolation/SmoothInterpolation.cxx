@@ -7,6 +7,7 @@
 #include "Core/Models/Interpolation/SmoothInterpolationWork.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Solvers/NotPositiveDefinite.h"
+#include "Core/Surface/ComponentMeshes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,91 @@
 
 namespace SurfaceDiffusion
 {
+
+namespace
+{
+
+/// The values of each component, with its own numbers of vertices.
+std::vector<ScatteredValues> ByComponent(const TriangleMesh& mesh, const ScatteredValues& all)
+{
+  const std::vector<Index>& begin = mesh.ComponentsBegin();
+  std::vector<ScatteredValues> parts(static_cast<std::size_t>(mesh.NumberOfComponents()));
+  std::vector<std::vector<Index>> rows(parts.size());
+  for (Index i = 0; i < all.Count(); ++i)
+  {
+    SurfacePoint place = all.Places[i];
+    std::size_t counting = 0;
+    while (place.Coordinates[counting] == 0.0)
+    {
+      ++counting;
+    }
+    const Index vertex = place.Vertices[counting];
+    const auto after = std::upper_bound(begin.begin(), begin.end(), vertex);
+    const auto c = static_cast<std::size_t>(after - begin.begin()) - 1;
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      place.Vertices[a] =
+        (place.Coordinates[a] == 0.0 ? vertex : place.Vertices[a]) - begin[c];
+    }
+    parts[c].Places.push_back(place);
+    rows[c].push_back(i);
+  }
+  for (std::size_t c = 0; c < rows.size(); ++c)
+  {
+    const Index count = parts[c].Count();
+    parts[c].Given.resize(count, all.Given.cols());
+    parts[c].Weights.resize(count);
+    for (Index i = 0; i < count; ++i)
+    {
+      const Index row = rows[c][static_cast<std::size_t>(i)];
+      parts[c].Given.row(i) = all.Given.row(row);
+      parts[c].Weights[i] = all.Weights[row];
+    }
+  }
+  return parts;
+}
+
+/// The numbers of a column over the components, from those of each with its values.
+SmoothInterpolation::Column Together(const std::vector<SmoothInterpolation::Column>& parts,
+  const std::vector<const ScatteredValues*>& values)
+{
+  if (parts.size() == 1)
+  {
+    return parts[0];
+  }
+  SmoothInterpolation::Column all;
+  Index most = 0;
+  double count = 0.0;
+  double weight = 0.0;
+  double free = 0.0;
+  double noise = 0.0;
+  for (std::size_t c = 0; c < parts.size(); ++c)
+  {
+    const SmoothInterpolation::Column& part = parts[c];
+    const Index own = values[c]->Count();
+    const double total = values[c]->Weights.sum();
+    if (own > most)
+    {
+      most = own;
+      all.Mu = part.Mu;
+    }
+    all.Score += own * part.Score;
+    all.Residual += total * part.Residual * part.Residual;
+    all.DegreesOfFreedom += part.DegreesOfFreedom;
+    all.Energy += part.Energy;
+    const double left = std::max(1e-6 * own, own - part.DegreesOfFreedom);
+    free += part.NoiseLevel > 0.0 ? left : 0.0;
+    noise += left * part.NoiseLevel * part.NoiseLevel;
+    count += own;
+    weight += total;
+  }
+  all.Score /= count;
+  all.Residual = std::sqrt(all.Residual / weight);
+  all.NoiseLevel = free > 0.0 ? std::sqrt(noise / free) : 0.0;
+  return all;
+}
+
+} // namespace
 
 SmoothInterpolation::SmoothInterpolation(std::shared_ptr<const Assembler> assembler,
   CornerWeights coefficients, const Settings& settings, const ParallelFor& parallel)
@@ -52,62 +138,100 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   {
     throw std::invalid_argument("the given noise level is not above 0");
   }
-  Work work(*this->Assembly, this->Coefficients, this->Options, data, this->Parallel);
-  ScatteredValues& rows = work.Data.Rows;
+  const MergedValues merged(data);
   Result result;
-  result.RepeatedValues = work.Data.Repeated;
-  result.ContradictingPlaces = work.Data.Contradicting;
+  result.RepeatedValues = merged.Repeated;
+  result.ContradictingPlaces = merged.Contradicting;
   result.Columns.resize(static_cast<std::size_t>(columns));
-
-  // Values are measured from the mean of their component: the errors of a solve are relative to the
-  // contrast then.
-  work.Component.resize(n);
+  result.U = Values::Constant(n, columns, std::numeric_limits<double>::quiet_NaN());
+  if (this->Options.ComputeError)
+  {
+    result.Error = result.U;
+  }
+  const Eigen::RowVectorXd lowest = merged.Rows.Given.colwise().minCoeff();
+  const Eigen::RowVectorXd highest = merged.Rows.Given.colwise().maxCoeff();
+  const std::vector<ScatteredValues> values = ByComponent(mesh, merged.Rows);
+  const ComponentMeshes meshes(mesh);
+  std::vector<const ScatteredValues*> valuesOfParts;
+  std::vector<std::vector<Column>> columnsOfParts(result.Columns.size());
   for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
-    std::fill(work.Component.begin() + mesh.ComponentsBegin()[c],
-      work.Component.begin() + mesh.ComponentsBegin()[c + 1], c);
-  }
-  work.Weights = Vector::Zero(mesh.NumberOfComponents());
-  for (Index i = 0; i < rows.Count(); ++i)
-  {
-    work.Weights[work.ComponentOf(i)] += rows.Weights[i];
-  }
-  work.Lowest = rows.Given.colwise().minCoeff();
-  work.Highest = rows.Given.colwise().maxCoeff();
-  work.Origin = Values::Zero(mesh.NumberOfComponents(), columns);
-  for (Index i = 0; i < rows.Count(); ++i)
-  {
-    const Index c = work.ComponentOf(i);
-    work.Origin.row(c) += rows.Weights[i] / work.Weights[c] * rows.Given.row(i);
-  }
-  for (Index i = 0; i < rows.Count(); ++i)
-  {
-    rows.Given.row(i) -= work.Origin.row(work.ComponentOf(i));
-  }
-  work.Open = Flags::Constant(n, false);
-  for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
-  {
-    const Index begin = mesh.ComponentsBegin()[c];
-    const Index size = mesh.ComponentsBegin()[c + 1] - begin;
-    if (work.Weights[c] > 0.0)
+    const ScatteredValues& rows = values[static_cast<std::size_t>(c)];
+    if (rows.Count() == 0)
     {
-      ++work.Parts;
-      work.Area += mesh.ControlAreas().segment(begin, size).sum();
+      ++result.UndeterminedComponents;
       continue;
     }
-    work.Open.segment(begin, size) = true;
-    ++result.UndeterminedComponents;
+    const Index begin = mesh.ComponentsBegin()[c];
+    const Index size = mesh.ComponentsBegin()[c + 1] - begin;
+    const ProgressMonitor own = progress.Part(
+      static_cast<double>(begin) / n, static_cast<double>(begin + size) / n);
+    const Result part = size == n
+      ? this->FitPart(rows, lowest, highest, own)
+      : this->OfComponent(meshes, c).FitPart(rows, lowest, highest, own);
+    result.U.middleRows(begin, size) = part.U;
+    if (this->Options.ComputeError)
+    {
+      result.Error.middleRows(begin, size) = part.Error;
+    }
+    for (std::size_t column = 0; column < result.Columns.size(); ++column)
+    {
+      columnsOfParts[column].push_back(part.Columns[column]);
+    }
+    valuesOfParts.push_back(&rows);
+    ++result.Parts;
+    result.PartsWithTooFewValues += part.PartsWithTooFewValues;
+    result.HasUnknownError = result.HasUnknownError || part.HasUnknownError;
+    result.IsFlattest = result.IsFlattest || part.IsFlattest;
+    result.DropsNegativeCurvature = result.DropsNegativeCurvature || part.DropsNegativeCurvature;
+    result.RangeIsOptimal = result.RangeIsOptimal && part.RangeIsOptimal;
   }
-  work.Start = Values::Zero(n, columns);
+  for (std::size_t column = 0; column < result.Columns.size(); ++column)
+  {
+    result.Columns[column] = Together(columnsOfParts[column], valuesOfParts);
+  }
+  progress.Report(1.0);
+  return result;
+}
 
-  constexpr Index fewest = 3;
+/// The same for a component of the surface.
+SmoothInterpolation SmoothInterpolation::OfComponent(const ComponentMeshes& meshes, Index c) const
+{
+  const std::vector<Index> triangles = meshes.TrianglesOf(c);
+  const auto count = static_cast<Index>(triangles.size());
+  CornerWeights coefficients(count, 3);
+  for (Index t = 0; t < count; ++t)
+  {
+    coefficients.row(t) = this->Coefficients.row(triangles[static_cast<std::size_t>(t)]);
+  }
+  // Loops over few triangles are not worth threads.
+  const ParallelFor& parallel = count > BlockSize ? this->Parallel : SerialFor();
+  return { std::make_shared<const Assembler>(meshes.Make(c), parallel), std::move(coefficients),
+    this->Options, parallel };
+}
+
+SmoothInterpolation::Result SmoothInterpolation::FitPart(const ScatteredValues& rows,
+  const Eigen::RowVectorXd& lowest, const Eigen::RowVectorXd& highest,
+  const ProgressMonitor& progress) const
+{
+  const Index n = this->Assembly->Mesh().NumberOfVertices();
+  const Eigen::Index columns = rows.Given.cols();
+  Work work(*this->Assembly, this->Coefficients, this->Options, rows, this->Parallel);
+  work.Lowest = lowest;
+  work.Highest = highest;
+  work.Start = Values::Zero(n, columns);
+  Result result;
+  result.Columns.resize(static_cast<std::size_t>(columns));
+  result.Parts = 1;
   result.U.resize(n, columns);
   if (this->Options.ComputeError)
   {
     result.Error = Values::Zero(n, columns);
   }
-  result.HasTooFewValues = this->Options.Smoothing == Choice::Automatic && rows.Count() < fewest;
-  if (this->Options.Smoothing == Choice::Exact || result.HasTooFewValues)
+  constexpr Index fewest = 3;
+  result.PartsWithTooFewValues =
+    this->Options.Smoothing == Choice::Automatic && rows.Count() < fewest ? 1 : 0;
+  if (this->Options.Smoothing == Choice::Exact || result.PartsWithTooFewValues > 0)
   {
     this->FitExactly(work, result, progress);
   }
@@ -115,28 +239,18 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   {
     this->FitSmoothly(work, result, progress);
   }
-  for (Index i = 0; i < n; ++i)
+  for (Eigen::Index c = 0; c < columns; ++c)
   {
-    result.U.row(i) += work.Origin.row(work.Component[i]);
+    Column& found = result.Columns[static_cast<std::size_t>(c)];
+    found.Energy = 0.5 * found.Mu * work.Energy.Squares(result.U.col(c))[0] +
+      0.5 * work.TotalWeight * found.Residual * found.Residual;
   }
+  result.U.rowwise() += work.Origin;
   for (Eigen::Index c = 0; c < columns && this->Options.KeepRange; ++c)
   {
     // To the last bit, which the origin rounds
-    result.U.col(c) =
-      result.U.col(c).cwiseMax(data.Given.col(c).minCoeff()).cwiseMin(data.Given.col(c).maxCoeff());
+    result.U.col(c) = result.U.col(c).cwiseMax(lowest[c]).cwiseMin(highest[c]);
   }
-  for (Index i = 0; i < n; ++i)
-  {
-    if (work.Open[i])
-    {
-      result.U.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
-      if (this->Options.ComputeError)
-      {
-        result.Error.row(i).setConstant(std::numeric_limits<double>::quiet_NaN());
-      }
-    }
-  }
-  progress.Report(1.0);
   return result;
 }
 
@@ -145,15 +259,10 @@ void SmoothInterpolation::KeepInRange(Work& work, Result& result, Eigen::Index c
 {
   const double mu = work.Fit.GetSmoothing();
   const auto n = static_cast<Index>(u.rows());
-  Vector low(n), high(n);
-  for (Index i = 0; i < n; ++i)
-  {
-    const double origin = work.Origin(work.Component[i], column);
-    low[i] = work.Lowest[column] - origin;
-    high[i] = work.Highest[column] - origin;
-  }
-  const RangeConstraint range(work.Data.Rows, column, this->Options.Smoothing == Choice::Exact,
-    std::move(low), std::move(high));
+  const double origin = work.Origin[column];
+  const RangeConstraint range(work.Rows, column, this->Options.Smoothing == Choice::Exact,
+    Vector::Constant(n, work.Lowest[column] - origin),
+    Vector::Constant(n, work.Highest[column] - origin));
   const auto prepare = [&](const Flags& all, const ProgressMonitor& part)
   { this->Prepare(work, result, mu, all, part); };
   const bool isOptimal = range.Impose(work.Fit, prepare, held, u, forces, progress);
@@ -164,7 +273,7 @@ void SmoothInterpolation::KeepInRange(Work& work, Result& result, Eigen::Index c
 double SmoothInterpolation::StartSmoothing(const Work& work) const
 {
   constexpr double reach = 3.0;
-  const ScatteredValues& rows = work.Data.Rows;
+  const ScatteredValues& rows = work.Rows;
   const double diffusivity = this->Options.Rim == RimCondition::Free
     ? 1.0
     : this->Coefficients.sum() / CotanWeights(this->Assembly->Mesh(), this->Parallel).sum();
@@ -177,13 +286,13 @@ double SmoothInterpolation::StartSmoothing(const Work& work) const
 void SmoothInterpolation::Prepare(
   Work& work, Result& result, double mu, const Flags& held, const ProgressMonitor& progress) const
 {
-  const bool isExact = this->Options.Smoothing == Choice::Exact || result.HasTooFewValues;
+  const bool isExact = this->Options.Smoothing == Choice::Exact || result.PartsWithTooFewValues > 0;
   PivotCounts pivots = work.Fit.Prepare(mu, held, isExact, progress);
   const bool isFree = this->Options.Rim == RimCondition::Free;
   if (pivots.Negative > 0 && isFree && !result.DropsNegativeCurvature)
   {
     work.Energy.DropNegativeCurvature();
-    work.EnergyOfMean.resize(0);
+    work.EnergyOfMean = -1.0;
     result.DropsNegativeCurvature = true;
     pivots = work.Fit.Prepare(mu, held, isExact, progress);
   }
@@ -192,7 +301,7 @@ void SmoothInterpolation::Prepare(
     // Enough to be resolved, and little beside the energy.
     const double n = static_cast<double>(held.size());
     work.Energy.AddTension(std::max(1e-6, 1e-12 * n * n) / work.Area);
-    work.EnergyOfMean.resize(0);
+    work.EnergyOfMean = -1.0;
     result.IsFlattest = true;
     pivots = work.Fit.Prepare(mu, held, isExact, progress);
   }
@@ -207,52 +316,37 @@ void SmoothInterpolation::Prepare(
 Vector SmoothInterpolation::VarianceOfMean(
   Work& work, const Flags& held, bool isExact, const ProgressMonitor& progress) const
 {
-  const ScatteredValues& rows = work.Data.Rows;
+  const ScatteredValues& rows = work.Rows;
   const auto n = static_cast<Index>(held.size());
   if (!(this->Options.Kappa > 0.0))
   {
     return Vector::Zero(n);
   }
-  const Index parts = this->Assembly->Mesh().NumberOfComponents();
-  if (work.EnergyOfMean.size() == 0)
+  if (work.EnergyOfMean < 0.0)
   {
     ScatteredValues weightless = rows;
     weightless.Weights.setZero();
     SmoothFit prior(work.Energy, weightless, Work::IsRegularMesh(*this->Assembly), this->Parallel);
-    const PivotCounts pivots = prior.Prepare(1.0, work.Open, false, progress);
-    Values weights = rows.Weights;
-    for (Index i = 0; i < rows.Count(); ++i)
-    {
-      weights(i, 0) /= work.Weights[work.ComponentOf(i)];
-    }
+    const PivotCounts pivots = prior.Prepare(1.0, work.None, false, progress);
+    const Values weights = rows.Weights / work.TotalWeight;
     // Constants that have no energy within round-off leave no error: all of it is in the fit.
-    work.EnergyOfMean = Vector::Zero(parts);
+    work.EnergyOfMean = 0.0;
     if (pivots.Open + pivots.Negative == 0)
     {
-      const Values covariances = prior.InverseAtPoints(weights);
-      for (Index i = 0; i < rows.Count(); ++i)
-      {
-        work.EnergyOfMean[work.ComponentOf(i)] += weights(i, 0) * covariances(i, 0);
-      }
+      work.EnergyOfMean = std::max(0.0, weights.cwiseProduct(prior.InverseAtPoints(weights)).sum());
     }
   }
   Values ones = held.select(Values::Ones(n, 1), 0.0);
   work.Fit.Solve(Values::Ones(rows.Count(), 1), ones);
-  Vector variances(n);
-  for (Index i = 0; i < n; ++i)
-  {
-    const Index c = work.Component[i];
-    const double ofNoise = isExact ? 0.0 : 1.0 / work.Weights[c];
-    const double variance = ofNoise + work.EnergyOfMean[c] / work.Fit.GetSmoothing();
-    variances[i] = variance * std::pow(1.0 - ones(i, 0), 2);
-  }
-  return variances;
+  const double ofNoise = isExact ? 0.0 : 1.0 / work.TotalWeight;
+  const double variance = ofNoise + work.EnergyOfMean / work.Fit.GetSmoothing();
+  return variance * (1.0 - ones.col(0).array()).square();
 }
 
 void SmoothInterpolation::FitSmoothly(
   Work& work, Result& result, const ProgressMonitor& progress) const
 {
-  const ScatteredValues& rows = work.Data.Rows;
+  const ScatteredValues& rows = work.Rows;
   const Eigen::Index columns = rows.Given.cols();
   const bool isGiven = this->Options.Smoothing == Choice::Given;
   const double noise =
@@ -261,7 +355,7 @@ void SmoothInterpolation::FitSmoothly(
   const double givenMu = std::min(largest, this->Options.Mu);
   const auto measure = [&](double mu, const ProgressMonitor& part)
   {
-    this->Prepare(work, result, mu, work.Open, part.Part(0.0, 0.5));
+    this->Prepare(work, result, mu, work.None, part.Part(0.0, 0.5));
     return InfluenceSpectrum(work.Fit, rows, this->Options.Seed, isGiven, part.Part(0.5, 1.0));
   };
   const auto take = [&](const InfluenceSpectrum& spectrum, double mu, Eigen::Index column)
@@ -333,12 +427,12 @@ void SmoothInterpolation::FitSmoothly(
 bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index first,
   Eigen::Index count, double mu, const ProgressMonitor& progress) const
 {
-  const ScatteredValues& rows = work.Data.Rows;
+  const ScatteredValues& rows = work.Rows;
   // The factor may be that of the active set of the column before.
   const bool isOfBounds = this->Options.KeepRange && first > 0;
   if (work.Fit.GetSmoothing() != mu || isOfBounds)
   {
-    this->Prepare(work, result, mu, work.Open, progress.Part(0.0, 0.3));
+    this->Prepare(work, result, mu, work.None, progress.Part(0.0, 0.3));
   }
   Values all = work.Start.middleCols(first, count);
   const Values forces = work.Fit.Solve(rows.Given.middleCols(first, count), all);
@@ -351,7 +445,7 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
   if (this->Options.ComputeError)
   {
     deviations = (work.Fit.InverseDiagonal(progress.Part(0.4, 0.7)).cwiseMax(0.0) +
-      this->VarianceOfMean(work, work.Open, false, progress.Part(0.7, 0.8)))
+      this->VarianceOfMean(work, work.None, false, progress.Part(0.7, 0.8)))
                    .cwiseSqrt();
   }
   for (Eigen::Index c = 0; c < count; ++c)
@@ -361,7 +455,7 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     if (this->Options.KeepRange)
     {
       Values none = forces.col(c);
-      this->KeepInRange(work, result, first + c, work.Open, u, none, progress.Part(0.8, 1.0));
+      this->KeepInRange(work, result, first + c, work.None, u, none, progress.Part(0.8, 1.0));
     }
     const Vector given = rows.Given.col(first + c);
     const Vector misfit = given - work.Fit.AtPoints(u).col(0);
@@ -382,7 +476,6 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
         (isKnown ? found.NoiseLevel : std::numeric_limits<double>::quiet_NaN()) * deviations;
       result.HasUnknownError = result.HasUnknownError || !isKnown;
     }
-    found.Roughness = work.Energy.Squares(u)[0];
     result.U.col(first + c) = u;
   }
   return true;

@@ -12,6 +12,8 @@
 namespace SurfaceDiffusion
 {
 
+class ComponentMeshes;
+
 /// Interpolation and smoothing of values at a few points of a surface: the minimiser of
 ///   E(u) = 1/2 sum_i w_i (u(p_i) - d_i)^2 + mu/2 int (kappa^2 u - div(D grad u))^2,
 /// a thin-plate spline on the surface (G. Wahba, Spline Models for Observational Data, SIAM 1990).
@@ -20,8 +22,11 @@ namespace SurfaceDiffusion
 /// every value as the mesh becomes finer. The energy of second derivatives bounds values at points,
 /// so that this interpolant converges.
 ///
-/// With kappa = 0 constants have no energy. With kappa > 0 the values of each connected component are
-/// measured from their weighted mean, to which u returns beyond the distance 1/kappa from them.
+/// Each connected component has a fit of its own, with its own mu, noise and score, so that neither
+/// its size nor its values matter to another one.
+///
+/// With kappa = 0 constants have no energy. With kappa > 0 the values of a component are measured from
+/// their weighted mean, to which u returns beyond the distance 1/kappa from them.
 ///
 /// u is also the mean of a Gaussian field with the precision (mu Q + B^T W B) / s^2, where s is the
 /// standard deviation of values with weight 1: from it follow standard errors. With kappa > 0 the
@@ -54,32 +59,38 @@ public:
     std::int64_t Seed = 0; ///< of the random vectors of cross-validation with many values
   };
 
-  /// What was found for a column of the data.
+  /// What was found for a column of the data, over all components.
   struct Column
   {
-    double Mu = 0.0; ///< 0: the values hold. At most what the mean of the values resolves.
-    double Score = 0.0; ///< of cross-validation; 0 if the values hold
+    /// Of the component with the most values, the first one of these. 0: the values hold. At most what
+    /// the mean of the values resolves.
+    double Mu = 0.0;
+    double Score = 0.0; ///< of cross-validation, the mean over the values; 0 if the values hold
     /// Root of the weighted mean square of u(p) - d. Exact: it is round-off unless values at more
     /// than three places of one triangle contradict each other.
     double Residual = 0.0;
     double DegreesOfFreedom = 0.0;
-    double NoiseLevel = 0.0; ///< s, given or estimated; 0 if the values hold
-    double Roughness = 0.0; ///< u^T Q u
+    /// s, given or estimated, the root of its mean square over the residual degrees of freedom; 0 if
+    /// the values hold.
+    double NoiseLevel = 0.0;
+    double Energy = 0.0; ///< E(u)
   };
 
   struct Result
   {
     Values U; ///< n x k; NaN in components without values
-    /// The standard error, n x k; no rows unless asked for. NaN in columns whose values do not show
-    /// a deviation: one per component, all on a function without energy, or all reached by the fit.
+    /// The standard error, n x k; no rows unless asked for. NaN in components without values, and in
+    /// those whose values do not show a deviation: one, all on a function without energy, or all
+    /// reached by the fit.
     Values Error;
-    bool HasUnknownError = false; ///< in a column
+    bool HasUnknownError = false; ///< the latter
     std::vector<Column> Columns;
     Index UndeterminedComponents = 0; ///< without values
     Index RepeatedValues = 0; ///< at a place that another value has, too
     Index ContradictingPlaces = 0; ///< whose values differ: their weighted mean counts
-    /// Automatic with fewer than three places, too few for a choice of mu: the values hold.
-    bool HasTooFewValues = false;
+    Index Parts = 0; ///< components with values
+    /// Automatic: those with fewer than three places, too few for a choice of mu: their values hold.
+    Index PartsWithTooFewValues = 0;
     /// Free, on surfaces on which the values leave a slope open: the flattest function is taken.
     bool IsFlattest = false;
     /// Free, on coarse meshes of surfaces with saddles: the energy was indefinite and is taken without
@@ -101,6 +112,10 @@ public:
 private:
   struct Work;
 
+  SmoothInterpolation OfComponent(const ComponentMeshes& meshes, Index c) const;
+  /// Of a connected surface, the bounds of KeepRange being those of all values.
+  Result FitPart(const ScatteredValues& rows, const Eigen::RowVectorXd& lowest,
+    const Eigen::RowVectorXd& highest, const ProgressMonitor& progress) const;
   void FitExactly(Work& work, Result& result, const ProgressMonitor& progress) const;
   void FitSmoothly(Work& work, Result& result, const ProgressMonitor& progress) const;
   bool FitColumns(Work& work, Result& result, Eigen::Index first, Eigen::Index count, double mu,

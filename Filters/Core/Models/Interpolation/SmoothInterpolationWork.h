@@ -13,15 +13,25 @@
 namespace SurfaceDiffusion
 {
 
-/// What a fit needs beside the settings.
+/// What the fit of a connected component needs beside the settings.
 struct SmoothInterpolation::Work
 {
   Work(const Assembler& assembler, const CornerWeights& coefficients, const Settings& settings,
     const ScatteredValues& values, const ParallelFor& parallel)
-    : Data(values)
+    : Rows(values)
     , Energy(assembler, coefficients, settings.Kappa, settings.Rim, parallel)
-    , Fit(Energy, Data.Rows, IsRegularMesh(assembler), parallel)
+    , Fit(Energy, Rows, IsRegularMesh(assembler), parallel)
+    , Area(assembler.Mesh().ControlAreas().sum())
+    , None(Flags::Constant(assembler.Mesh().NumberOfVertices(), false))
+    , TotalWeight(values.Weights.sum())
   {
+    // Values are measured from their mean: the errors of a solve are relative to the contrast then.
+    this->Origin = Eigen::RowVectorXd::Zero(values.Given.cols());
+    for (Index i = 0; i < values.Count(); ++i)
+    {
+      this->Origin += values.Weights[i] / this->TotalWeight * values.Given.row(i);
+    }
+    this->Rows.Given.rowwise() -= this->Origin;
   }
 
   static bool IsRegularMesh(const Assembler& assembler)
@@ -36,40 +46,26 @@ struct SmoothInterpolation::Work
     constexpr double resolved = 1e-13;
     // Of an energy that no function has, round-off of any sign is left.
     const double energy = this->Energy.Matrix().diagonal().cwiseAbs().sum();
-    return this->Data.Rows.Weights.sum() / (resolved * energy);
-  }
-
-  /// The component of a value.
-  Index ComponentOf(Index row) const
-  {
-    return this->Component[this->Data.Rows.Places[row].Vertices[0]];
+    return this->TotalWeight / (resolved * energy);
   }
 
   /// The largest magnitude of the values of a column.
   double SizeOf(Eigen::Index column) const
   {
-    double size = 0.0;
-    for (Index i = 0; i < this->Data.Rows.Count(); ++i)
-    {
-      const double given = this->Data.Rows.Given(i, column);
-      size = std::max(size, std::abs(given + this->Origin(this->ComponentOf(i), column)));
-    }
-    return size;
+    return (this->Rows.Given.col(column).array() + this->Origin[column]).abs().maxCoeff();
   }
 
-  MergedValues Data;
+  ScatteredValues Rows;
   SmoothnessEnergy Energy;
   SmoothFit Fit;
-  Flags Open; ///< vertices of components without values, which are held at zero
-  Index Parts = 0; ///< components with values
-  double Area = 0.0; ///< of these components
-  std::vector<Index> Component; ///< of each vertex
-  Values Origin; ///< per component, from which values are measured
-  Vector Weights; ///< of all values of a component
-  Eigen::RowVectorXd Lowest, Highest; ///< of the values of a column
+  double Area;
+  Flags None; ///< no vertex
+  Eigen::RowVectorXd Origin; ///< from which values are measured
+  double TotalWeight; ///< of the values
+  Eigen::RowVectorXd Lowest, Highest; ///< the bounds of a column
   Values Start;
-  /// w^T B Q^-1 B^T w per component, for the weights w of the mean of its values; no entries: not known
-  Vector EnergyOfMean;
+  /// w^T B Q^-1 B^T w for the weights w of the mean of the values; negative: not known
+  double EnergyOfMean = -1.0;
 };
 
 } // namespace SurfaceDiffusion

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Core/Foundation/ProgressMonitor.h"
+#include "Core/Geodesics/EdgeFrames.h"
+#include "Core/Geodesics/GeodesicWindow.h"
+#include "Core/Geodesics/SourcePiece.h"
+
+#include <functional>
+#include <queue>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace SurfaceDiffusion
+{
+
+/// The windows of one call of ExactDistance::Find().
+class WindowFront
+{
+public:
+  WindowFront(const TriangleMesh& mesh, const EdgeFrames& frames, double cutoff);
+
+  void AddSource(const SourcePiece& piece, Index source);
+  /// Throws Aborted.
+  void Run(const ProgressMonitor& progress);
+
+  std::vector<double> Times;
+  std::vector<Index> Sources;
+
+private:
+  /// Windows that have come to an edge and not yet gone over its triangle.
+  struct Waiting
+  {
+    std::vector<GeodesicWindow> Windows;
+    double Least = 0.0;
+    double Queued = 0.0; ///< the least distance when the edge was put into the queue
+    bool IsChanged = false; ///< since then
+  };
+  /// From where a way comes to a vertex.
+  struct Incoming
+  {
+    Index Corner = -1; ///< the triangle that it comes through; -1: ways go on everywhere
+    double Angle = 0.0; ///< between the way and the edge to the next corner
+  };
+
+  void AddPoint(Index triangle, const std::array<double, 3>& at, Index source);
+  /// Ways from a point of a triangle over its edges; behind: but this one, where they come from.
+  void LeavePoint(Index triangle, const std::array<double, 3>& at, Index source, Index behind);
+  bool IsOnEdge(Index edge, const std::array<double, 3>& at) const;
+  /// The ways that leave a straight piece at right angles.
+  void AddStrips(const SourcePiece& piece, Index source);
+  /// A way to a corner of a triangle from a place in the frame of the edge that begins there.
+  void ReachFrom(Index corner, const Eigen::Vector2d& place, Index source);
+  /// A way to a vertex. Returns whether it is shorter than those known.
+  bool Reach(Index vertex, double time, Index source, const Incoming& incoming);
+  /// Ways from a vertex in all directions, whatever way leads there.
+  void LeaveEverywhere(Index vertex);
+  void LeaveVertex(Index vertex);
+  /// Ways from a corner of a triangle over the edge opposite, between angles from the edge to the
+  /// next corner.
+  void LeaveCorner(Index corner, double from, double to, double start, Index source);
+  /// Windows that have gone over the triangle; null: they are not kept here.
+  std::vector<GeodesicWindow>* PastAt(Index edge, double& roundOff);
+  void CrossTriangle(Index edge, std::vector<GeodesicWindow>& windows);
+  void CrossCorner(
+    Index edge, bool left, const GeodesicWindow& window, bool seesApex, double atApex);
+  /// Puts a window, in the direction of `edge` or reversed, behind it.
+  void GoOver(Index edge, bool reversed, std::uint32_t behind, const GeodesicWindow& window);
+  /// Puts edges that windows have come to into the queue.
+  void QueueChanged();
+  Index VertexAt(Index corner) const { return this->Mesh.TriangleVertices().data()[corner]; }
+  double TimeAt(Index corner) const
+  {
+    return this->Times[static_cast<std::size_t>(this->VertexAt(corner))];
+  }
+
+  const TriangleMesh& Mesh;
+  const EdgeFrames& Frames;
+  double Cutoff;
+  std::vector<Incoming> Ways; ///< per vertex
+  std::vector<Index> WaitingAt; ///< per edge; -1: none
+  /// Per edge; windows past are kept at the few that many come to again and again: beside needles,
+  /// and where ways branch at edges of many triangles. Otherwise these would multiply.
+  std::vector<unsigned char> TimesCrossed;
+  std::unordered_map<Index, std::vector<GeodesicWindow>> Past;
+  std::vector<Waiting> Pool;
+  std::vector<Index> Free;
+  using Event = std::pair<double, Index>; ///< an edge, or -1 - vertex
+  std::priority_queue<Event, std::vector<Event>, std::greater<>> Queue;
+  std::vector<Index> Changed; ///< edges whose windows have changed
+  WindowBuffers Buffers;
+  Index NumberReached = 0;
+};
+
+} // namespace SurfaceDiffusion

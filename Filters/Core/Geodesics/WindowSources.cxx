@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geodesics/WindowFront.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+using Window = GeodesicWindow;
+using Eigen::Vector2d;
+
+/// Points nearer to a vertex than this part of the shortest edge there are at the vertex.
+constexpr double AtVertex = 1e-12;
+/// Ways from points nearer than this part turn at the vertex, too: their directions there are less
+/// certain.
+constexpr double NearVertex = 1e-3;
+
+double Entry(const std::array<double, 3>& at, Index corner)
+{
+  return at[static_cast<std::size_t>(corner % 3)];
+}
+
+/// A point of a triangle in the frame of an edge: the corner opposite is 3 t + a as the edge is.
+Vector2d Place(const EdgeFrames::Frame& frame, const std::array<double, 3>& at, Index edge)
+{
+  const double apex = Entry(at, edge), end = Entry(at, edge + 2);
+  return { end * frame.Length + apex * frame.X, std::max(0.0, apex) * frame.Y };
+}
+
+} // namespace
+
+void WindowFront::AddSource(const SourcePiece& piece, Index source)
+{
+  this->AddPoint(piece.Triangle, piece.From, source);
+  if (piece.From != piece.To)
+  {
+    this->AddPoint(piece.Triangle, piece.To, source);
+    this->AddStrips(piece, source);
+  }
+}
+
+void WindowFront::ReachFrom(Index corner, const Vector2d& place, Index source)
+{
+  // In the frame of the edge that begins at the corner, so that short distances are precise
+  const EdgeFrames::Frame& frame = this->Frames[CornerAfter(corner, 2)];
+  const double distance = std::hypot(place[0], place[1]);
+  Incoming incoming;
+  if (distance >= NearVertex * std::min(frame.Length, frame.LeftLength))
+  {
+    incoming = { corner, std::max(0.0, std::atan2(place[1], place[0])) };
+  }
+  this->Reach(this->VertexAt(corner), distance, source, incoming);
+}
+
+void WindowFront::AddPoint(Index triangle, const std::array<double, 3>& at, Index source)
+{
+  const Index nearest =
+    3 * triangle + static_cast<Index>(std::max_element(at.begin(), at.end()) - at.begin());
+  const auto placeFrom = [&](Index corner)
+  {
+    const Index edge = CornerAfter(corner, 2);
+    return Place(this->Frames[edge], at, edge);
+  };
+  const EdgeFrames::Frame& around = this->Frames[nearest];
+  const Vector2d place = placeFrom(nearest);
+  const double distance = std::hypot(place[0], place[1]);
+  if (distance <= AtVertex * std::min(around.LeftLength, around.RightLength))
+  {
+    this->Reach(this->VertexAt(nearest), distance, source, {});
+    return;
+  }
+  // Ways from a point on an edge cannot be told apart there, and start behind it.
+  this->LeavePoint(triangle, at, source, -1);
+  for (Index edge = 3 * triangle; edge < 3 * triangle + 3; ++edge)
+  {
+    if (this->IsOnEdge(edge, at))
+    {
+      this->Frames.ForEachBehind(edge, false, this->Frames.Behind(edge),
+        [&](Index other, bool mirrored)
+        {
+          std::array<double, 3> behind{ 0.0, 0.0, 0.0 };
+          behind[static_cast<std::size_t>((other + 1) % 3)] = Entry(at, edge + (mirrored ? 2 : 1));
+          behind[static_cast<std::size_t>((other + 2) % 3)] = Entry(at, edge + (mirrored ? 1 : 2));
+          this->LeavePoint(other / 3, behind, source, other);
+        });
+    }
+  }
+}
+
+bool WindowFront::IsOnEdge(Index edge, const std::array<double, 3>& at) const
+{
+  const EdgeFrames::Frame& frame = this->Frames[edge];
+  return Entry(at, edge) * frame.Y <= AtVertex * frame.Length;
+}
+
+void WindowFront::LeavePoint(
+  Index triangle, const std::array<double, 3>& at, Index source, Index behind)
+{
+  for (Index edge = 3 * triangle; edge < 3 * triangle + 3; ++edge)
+  {
+    const Index before = CornerAfter(edge, 2);
+    this->ReachFrom(edge, Place(this->Frames[before], at, before), source);
+    if (behind >= 0 ? edge != behind : !this->IsOnEdge(edge, at))
+    {
+      const EdgeFrames::Frame& frame = this->Frames[edge];
+      const Vector2d place = Place(frame, at, edge);
+      Window w{ 0.0, frame.Length, place[0], -place[1], 0.0, 0.0, 0.0, source, false, false };
+      w.AtBegin = w.At(w.Begin);
+      w.AtEnd = w.At(w.End);
+      this->GoOver(edge, false, this->Frames.Behind(edge), w);
+    }
+  }
+}
+
+void WindowFront::AddStrips(const SourcePiece& piece, Index source)
+{
+  for (Index edge = 3 * piece.Triangle; edge < 3 * piece.Triangle + 3; ++edge)
+  {
+    // The corner at the begin of the edge
+    const EdgeFrames::Frame& frame = this->Frames[edge];
+    const Vector2d from = Place(frame, piece.From, edge), to = Place(frame, piece.To, edge);
+    const Vector2d along = to - from;
+    const double length = along.norm(), share = -from.dot(along) / (length * length);
+    if (!(length > 0.0))
+    {
+      return;
+    }
+    if (share > 0.0 && share < 1.0)
+    {
+      this->ReachFrom(CornerAfter(edge, 1), from + share * along, source);
+    }
+    // The ways out over this edge, at a right angle to the piece
+    const double side = along[0] < 0.0 ? 1.0 : -1.0;
+    const Vector2d way = Vector2d(-along[1], along[0]) * (side / length);
+    if (!(way[1] < 0.0))
+    {
+      continue;
+    }
+    const double a = from[0] - way[0] * from[1] / way[1], b = to[0] - way[0] * to[1] / way[1];
+    Window w{ std::clamp(std::min(a, b), 0.0, frame.Length),
+      std::clamp(std::max(a, b), 0.0, frame.Length), -way[0], way[1], -from.dot(way), 0.0, 0.0,
+      source, true, false };
+    w.AtBegin = w.At(w.Begin);
+    w.AtEnd = w.At(w.End);
+    if (w.End > w.Begin)
+    {
+      this->GoOver(edge, false, this->Frames.Behind(edge), w);
+    }
+  }
+}
+
+} // namespace SurfaceDiffusion

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Distributed/SurfacePieces.h"
+
+#include <string>
+#include <vector>
+
+class vtkAlgorithm;
+class vtkDataArray;
+
+namespace SurfaceDiffusion
+{
+
+/// An array that has to be the same in all pieces, or processes, that have it.
+struct SharedArray
+{
+  std::string Key; ///< which one
+  std::string Description; ///< name, numeric type, number of components, place
+};
+
+/// place: "points" or "cells".
+SharedArray DescribeArray(const std::string& key, vtkDataArray* array, const char* place);
+
+/// The error if two arrays of one key differ, among those of all processes; otherwise empty.
+/// Collective.
+std::string FindDisagreement(const Processes& processes, const std::vector<SharedArray>& here);
+
+/// The same for the arrays that SetInputArrayToProcess() chose for the filter, on the pieces of each
+/// surface.
+std::string FindDisagreement(
+  const Processes& processes, vtkAlgorithm* filter, const std::vector<SurfacePiece>& pieces);
+
+} // namespace SurfaceDiffusion

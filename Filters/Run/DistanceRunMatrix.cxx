@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The matrix of distances of a DistanceRun.
+#include "Run/DistanceRun.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+DistanceRun::Matrix DistanceRun::FindEach(const BlockInput& input, Settings& given,
+  const std::vector<Index>& points, double cutoff, const ProgressMonitor& progress)
+{
+  auto& settings = static_cast<DistanceSettings&>(given);
+  Problems problems;
+  Require(settings.Method != DistanceMethod::Heat, Word::Setting("Method"),
+    Word::Number("Method", settings.Method), Sentence("other methods than the heat method"),
+    problems);
+  ThrowProblems(std::move(problems));
+  this->FieldsVersion = {}; // the next update has another result
+  this->PrepareSurface(WithoutGivenAreas(input), settings, progress.Part(0.0, 0.1));
+  this->TakeSpeeds(input.ReadFields(), settings);
+  const Surface& surface = *this->Domain;
+  const TriangleMesh& mesh = *this->MeshOfSolvers;
+  const auto all = static_cast<Index>(surface.Points().rows());
+  const Index count = points.empty() ? all : static_cast<Index>(points.size());
+  const auto vertexOf = [&](Index k)
+  { return surface.VertexOf(points.empty() ? k : points[static_cast<std::size_t>(k)]); };
+  this->Found = {};
+  this->Found.AreShapes = true;
+  for (Index k = 0; k < count; ++k)
+  {
+    ++this->Found.Given;
+    ++(vertexOf(k) >= 0 ? this->Found.Count : this->Found.Outside);
+  }
+  this->Found.Outside = points.empty() ? 0 : this->Found.Outside;
+  const double unit = mesh.LengthUnit();
+  const double reach = cutoff / unit;
+  double area = 0.0;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    area += mesh.Shapes()[static_cast<std::size_t>(t)].Area();
+  }
+  const double share = std::min(1.0, std::acos(-1.0) * reach * reach / area);
+  const bool isExact = this->FindMethod(settings.Method, !this->Shapes.empty(), share * count) ==
+    DistanceMethod::Exact;
+  const ExactDistance* const exact = isExact ? &this->TakeExact() : nullptr;
+  const EikonalDistance* const eikonal =
+    isExact ? nullptr : &this->TakeEikonal(progress.Part(0.1, 0.2));
+  // The points of vertices that have more than one.
+  std::multimap<Index, Index> copies;
+  for (Index point = 0; point < all; ++point)
+  {
+    const Index i = surface.VertexOf(point);
+    if (i >= 0 && mesh.InputVertex()[static_cast<std::size_t>(i)] != point)
+    {
+      copies.emplace(i, point);
+    }
+  }
+  constexpr Index panel = 64; // rows that are found beside each other
+  std::vector<std::vector<std::pair<Index, double>>> rows(static_cast<std::size_t>(panel));
+  std::vector<GeodesicDistance::Memory> memories(
+    static_cast<std::size_t>(isExact ? 0 : std::min(panel, count)),
+    GeodesicDistance::Memory(isExact ? 0 : eikonal->NumberOfVertices()));
+  Matrix matrix;
+  for (Index first = 0; first < count; first += panel)
+  {
+    const Index size = std::min(panel, count - first);
+    ForEachTask(this->Parallel, size,
+      [&](Index k)
+      {
+        auto& row = rows[static_cast<std::size_t>(k)];
+        row.clear();
+        const Index vertex = vertexOf(first + k);
+        if (vertex < 0)
+        {
+          return;
+        }
+        std::vector<std::pair<Index, double>> near;
+        if (isExact)
+        {
+          const auto found =
+            exact->Find({ this->PieceOfVertex(vertex, 0) }, reach, ProgressMonitor());
+          for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+          {
+            if (found.Times[static_cast<std::size_t>(i)] <=
+              std::min(reach, std::numeric_limits<double>::max()))
+            {
+              near.emplace_back(i, found.Times[static_cast<std::size_t>(i)]);
+            }
+          }
+        }
+        else
+        {
+          near = eikonal->FindNear(vertex, reach, memories[static_cast<std::size_t>(k)]);
+        }
+        for (const auto& [i, time] : near)
+        {
+          row.emplace_back(mesh.InputVertex()[static_cast<std::size_t>(i)], time * unit);
+          const auto [copy, end] = copies.equal_range(i);
+          for (auto entry = copy; entry != end; ++entry)
+          {
+            row.emplace_back(entry->second, time * unit);
+          }
+        }
+        std::sort(row.begin(), row.end());
+      });
+    for (Index k = 0; k < size; ++k)
+    {
+      for (const auto& [column, time] : rows[static_cast<std::size_t>(k)])
+      {
+        matrix.Columns.push_back(column);
+        matrix.Data.push_back(time);
+      }
+      matrix.Begin.push_back(static_cast<std::int64_t>(matrix.Data.size()));
+    }
+    progress.Report(0.2 + 0.8 * static_cast<double>(first + size) / count);
+  }
+  return matrix;
+}
+
+} // namespace SurfaceDiffusion

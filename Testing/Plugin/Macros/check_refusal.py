@@ -1,0 +1,5 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+from client_checks import check_refusal
+
+check_refusal()
