@@ -6,10 +6,9 @@
 // error. Run by itself the program prints a table. With SURFACEDIFFUSION_LONG in the environment
 // (the test preset "long") all mesh files are read, and runs have their default length.
 
-#include "AllFilters.h"
-#include "BadMeshes.h"
 #include "MeshFile.h"
 #include "Promises.h"
+#include "SurfaceData.h"
 
 #include <gtest/gtest.h>
 
@@ -93,25 +92,6 @@ std::vector<Case> Family()
   return cases;
 }
 
-vtkSmartPointer<vtkPolyData> MakePolyData(const SurfaceDiffusion::Testing::NamedSurface& named)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataType(named.InSinglePrecision ? VTK_FLOAT : VTK_DOUBLE);
-  for (const auto& v : named.Shape.Vertices.rowwise())
-  {
-    points->InsertNextPoint(v.data());
-  }
-  vtkNew<vtkCellArray> cells;
-  for (const auto& f : named.Shape.Faces.rowwise())
-  {
-    cells->InsertNextCell({ f[0], f[1], f[2] });
-  }
-  auto surface = vtkSmartPointer<vtkPolyData>::New();
-  surface->SetPoints(points);
-  surface->SetPolys(cells);
-  return surface;
-}
-
 /// The surface of the case, with the rough positive data "f" in [1, 3).
 vtkSmartPointer<vtkPolyData> MakeSurface(const Case& c)
 {
@@ -127,9 +107,7 @@ vtkSmartPointer<vtkPolyData> MakeSurface(const Case& c)
       surface = bad.Name == c.Name ? MakePolyData(bad) : surface;
     }
   }
-  AddPointArray(surface, "f", 1, [](vtkIdType i, int k) { return 2.0 + Rough(i, k); });
-  surface->GetPointData()->SetActiveScalars("f");
-  AddArraysOfAllFilters(surface);
+  AddDataOfAllFilters(surface);
   return surface;
 }
 
@@ -283,15 +261,7 @@ TEST_P(EveryBadMesh, IsTakenByEveryModel)
   {
     SCOPED_TRACE(kind.Name);
     const auto filter = kind.Make();
-    if (auto* const relief = vtkSurfaceReliefFilter::SafeDownCast(filter))
-    {
-      // The heights are those of a sphere of radius 1; relief that is larger than a surface is an
-      // error.
-      const double scale = std::min(1.0, this->Surface->GetLength() / 3.5);
-      relief->SetHeight(scale * relief->GetHeight());
-      relief->SetBase(scale * relief->GetBase());
-      relief->SetFlank(scale * relief->GetFlank());
-    }
+    FitHeights(filter, this->Surface);
     this->Run(filter, kind.Result);
   }
 }
