@@ -46,10 +46,12 @@ class VTK(ForeignTest):
         version5 = HEAD.format("5.1", "ASCII", "POLYDATA") + TETRAHEDRON \
             + "POLYGONS 5 12\nOFFSETS vtktypeint64\n{}\nCONNECTIVITY vtktypeint64\n" \
             + " ".join(map(str, CORNERS)) + "\n"
+        key = '<InformationKey name="UNITS_LABEL" location="vtkDataArray">m</InformationKey>'
         right = [self.write("a.vtk", self.legacy(good)), self.write("b.vtk", version5.format("0 3 6 9 12")),
-                 self.write("a.vtp", xml()), self.write("a.vtu", xml(kind="UnstructuredGrid"))]
+                 self.write("a.vtp", xml()), self.write("a.vtu", xml(kind="UnstructuredGrid")),
+                 self.write("b.vtp", xml().replace("</DataArray></Polys>", key + "</DataArray></Polys>"))]
         code, out, error = self.info(*right)
-        self.assertEqual((code, out.count("4 points, 4 faces"), error), (0, 4, ""))
+        self.assertEqual((code, out.count("4 points, 4 faces"), error), (0, 5, ""))
         wrong = [(".vtk", self.legacy([number, *good[1:]], binary=binary))
                  for number in (2**30, 1000, 5, 4, 0, -1) for binary in (False, True)]
         wrong += [(".vtk", self.legacy(good, count, size)) for count, size in (

@@ -28,7 +28,7 @@ class _Xml:
     """
 
     def __init__(self, data):
-        self.data, self.type, self.order, self.compressor = data, "", "<", ""
+        self.data, self.type, self.compressor = data, "", ""
         self.number = np.dtype("u4")  #: of the lengths before arrays
         self.announced, self.places, self.piece = 0, set(), {}
         self.parents, self.offsets, self.root = [], [], b""
@@ -57,7 +57,7 @@ class _Xml:
 
     def _end(self, name):
         self.parents.pop()
-        if self.offsets and self.offsets[-1][1] is None:
+        if name == "DataArray" and self.offsets and self.offsets[-1][1] is None:
             given, _, start = self.offsets[-1]
             self.offsets[-1] = given, self.data[start:self.parser.CurrentByteIndex], start
 
