@@ -29,7 +29,7 @@ from ._run import (
 )
 from ._settings import settings_of, shorten, spell_documentation
 from ._surface import (
-    Surface, SurfaceLike, as_data, as_outside, as_surface, find_on_faces, has_integers,
+    Surface, SurfaceLike, as_data, as_numbers, as_outside, as_surface, find_on_faces, has_integers,
 )
 
 __all__ = [
@@ -945,7 +945,9 @@ def curvature(
     The principal curvatures are the eigenvalues of the derivative of the unit normals in the tangent
     plane. They are positive where the surface bends away from its normals: a sphere of radius R whose
     faces are counter-clockwise from outside has 1/R. Faces with another orientation than their
-    neighbours count as turned, so that signs follow the larger part of the area.
+    neighbours count as turned, so that signs follow the larger part of the area. On surfaces with one
+    side, such as a Moebius strip, the sign cannot be told, and the mean is positive. Curvatures that the
+    rounding of the coordinates may cause, of single precision if all coordinates are such numbers, are 0.
 
     With ``fwhm=0`` a quadratic polynomial is fitted to the points of at most two edges from each
     point. The error falls with the square of the length of the edges on even meshes, and with the
@@ -1020,9 +1022,13 @@ def derivatives(
 
         A d = - sum over the triangles t of a_t v_t . grad phi + integral over the boundary of phi v . nu
 
-    so that it integrates to the flux across the boundary, up to round-off. The curl about the
-    normals is the divergence of v x n, and the Laplacian that of the gradients on the triangles. On
-    planes all are exact for linear functions and fields, at the boundary, too.
+    so that it integrates to the flux across the boundary, up to round-off. For it, vectors at points
+    count by their parts across the normals of N. Max (J. Graphics Tools 4(2), 1999), which are those of spheres
+    where points lie on one. The curl about the normals is the divergence of v x n, and the Laplacian
+    inside that of the gradients on the triangles; at a boundary point it is that of the quadratic
+    polynomial that fits the data of the points at most two edges from it, or NaN, with a warning, if
+    these are too few. On planes all are exact for linear functions and fields, at the boundary, too. On
+    surfaces with one side, such as a Moebius strip, the curl has no sign, and its magnitude is given.
 
     Parameters
     ----------
@@ -1075,6 +1081,11 @@ def find_derivatives(
     surface = as_surface(surface)
     name = properties.pop("_name", "values")
     runner = Runner("derivatives", properties, {**ARRAYS, "InputArray": name})
+    if properties.get("quantity", "") in ("Divergence", "divergence", "Curl", "curl"):
+        shape, n, m = np.shape(as_numbers(name, values)), surface.n_points, surface.n_faces
+        if len(shape) not in (1, 2) or shape[0] not in (n, m):
+            raise ValueError(f"{name} has shape {shape}; allowed: ({n}, 3) or ({n}, 3 k), one row of 1 or k "
+                             f"vectors per point, or ({m}, 3) or ({m}, 3 k), one per face")
     data, faces = _take(name, values, surface, on_faces)
     data = data.astype(np.float64) if data.dtype == np.uint8 else data  # no colour, whose alpha is no data
     inputs = Input(surface, data, data_on_faces=faces, mask=left_out(mask, roi, surface))

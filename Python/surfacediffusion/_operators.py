@@ -4,12 +4,14 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+import inspect
+from typing import Any, Callable, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._functions import SHARED, left_out
 from ._run import Progress, ProgressReporter, warn_of_seams
 from ._settings import shorten
 from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask
@@ -24,7 +26,18 @@ class Eigenmodes(NamedTuple):
     modes: NDArray[np.float64]  #: (n, k), one mode per column
 
 
-def mass_matrix(surface: SurfaceLike, *, mask: ArrayLike | None = None) -> Any:
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _with_shared(function: F) -> F:
+    function.__doc__ = inspect.cleandoc(function.__doc__ or "").replace("{left_out}", SHARED["left_out"])
+    return function
+
+
+@_with_shared
+def mass_matrix(
+    surface: SurfaceLike, *, mask: ArrayLike | None = None, roi: ArrayLike | None = None
+) -> Any:
     """The lumped mass matrix M of a surface: the diagonal matrix of the areas of the points'
     control cells, a third of the triangles at each point. The integral of u over the surface is
     sum(M @ u).
@@ -33,8 +46,7 @@ def mass_matrix(surface: SurfaceLike, *, mask: ArrayLike | None = None) -> Any:
     ----------
     surface : Surface or tuple (points, faces)
         The surface. A Surface with given areas has these on the diagonal.
-    mask : array_like, shape (n,) or (m,), optional
-        Nonzero leaves a point with its faces, or a face, out.
+    {left_out}
 
     Returns
     -------
@@ -55,17 +67,19 @@ def mass_matrix(surface: SurfaceLike, *, mask: ArrayLike | None = None) -> Any:
     """
     sparse = import_sparse("mass_matrix")
     surface = as_surface(surface)
-    masses = _make_operators(surface, mask).masses()
+    masses = _make_operators(surface, mask, roi).masses()
     used = np.flatnonzero(masses)
     begin = np.concatenate([[0], np.cumsum(masses != 0)]).astype(np.int32)
     return sparse.csr_array(
         (masses[used], used.astype(np.int32), begin), shape=(surface.n_points,) * 2)
 
 
+@_with_shared
 def stiffness_matrix(
     surface: SurfaceLike,
     *,
     mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
     diffusivity: ArrayLike | None = None,
     intrinsic_delaunay: bool = False,
 ) -> Any:
@@ -78,8 +92,7 @@ def stiffness_matrix(
     ----------
     surface : Surface or tuple (points, faces)
         The surface.
-    mask : array_like, shape (n,) or (m,), optional
-        Nonzero leaves a point with its faces, or a face, out: nothing flows across.
+    {left_out}
     diffusivity : array_like, shape (m,) or (m, 3, 3), optional
         D of each face: a number, 0 or more, or a symmetric positive semidefinite tensor in space,
         whose part in the plane of the triangle counts. By default 1.
@@ -118,12 +131,15 @@ def stiffness_matrix(
     sparse = import_sparse("stiffness_matrix")
     surface = as_surface(surface)
     tensors = _as_tensors(surface, diffusivity)
-    operators = _make_operators(surface, mask, _as_delaunay(surface, intrinsic_delaunay, tensors))
+    operators = _make_operators(surface, mask, roi, _as_delaunay(surface, intrinsic_delaunay, tensors))
     warn_of_seams(operators, "nothing flows between them")
     return sparse.csr_array(operators.stiffness(tensors), shape=(surface.n_points,) * 2)
 
 
-def gradient_matrix(surface: SurfaceLike, *, mask: ArrayLike | None = None) -> Any:
+@_with_shared
+def gradient_matrix(
+    surface: SurfaceLike, *, mask: ArrayLike | None = None, roi: ArrayLike | None = None
+) -> Any:
     """The matrix G of the gradients of linear functions on the triangles:
     ``(G @ u).reshape(-1, 3)`` has the gradient of u on each of ``surface.triangles``, a vector in
     space and in the plane of the triangle. With the areas W of the triangles, each three times on a
@@ -133,8 +149,7 @@ def gradient_matrix(surface: SurfaceLike, *, mask: ArrayLike | None = None) -> A
     ----------
     surface : Surface or tuple (points, faces)
         The surface.
-    mask : array_like, shape (n,) or (m,), optional
-        Nonzero leaves a point with its faces, or a face, out.
+    {left_out}
 
     Returns
     -------
@@ -156,15 +171,17 @@ def gradient_matrix(surface: SurfaceLike, *, mask: ArrayLike | None = None) -> A
     """
     sparse = import_sparse("gradient_matrix")
     surface = as_surface(surface)
-    entries = _make_operators(surface, mask).gradient()
+    entries = _make_operators(surface, mask, roi).gradient()
     return sparse.csr_array(entries, shape=(3 * len(surface.triangles), surface.n_points))
 
 
+@_with_shared
 def eigenmodes(
     surface: SurfaceLike,
     n: int,
     *,
     mask: ArrayLike | None = None,
+    roi: ArrayLike | None = None,
     diffusivity: ArrayLike | None = None,
     intrinsic_delaunay: bool = False,
     progress: Progress = None,
@@ -184,8 +201,7 @@ def eigenmodes(
         The surface.
     n : int, from 1 to the number of points of the surface
         The number of modes.
-    mask : array_like, shape (n,) or (m,), optional
-        Nonzero leaves a point with its faces, or a face, out: modes are 0 there.
+    {left_out}
     diffusivity : array_like, shape (m,) or (m, 3, 3), optional
         D of each face, as for :func:`stiffness_matrix`.
     intrinsic_delaunay : bool, default False
@@ -197,7 +213,7 @@ def eigenmodes(
     -------
     Eigenmodes
         `eigenvalues` (n,), ascending, and `modes` (points, n), orthonormal: modes.T @ M @ modes =
-        1. The entry of each mode with the largest magnitude is positive, the first one of equal
+        1, and 0 at points that are left out. The entry of each mode with the largest magnitude is positive, the first one of equal
         entries. The same input gives the same bits, on any number of threads.
 
     References
@@ -213,7 +229,7 @@ def eigenmodes(
     """
     surface = as_surface(surface)
     tensors = _as_tensors(surface, diffusivity)
-    operators = _make_operators(surface, mask, _as_delaunay(surface, intrinsic_delaunay, tensors),
+    operators = _make_operators(surface, mask, roi, _as_delaunay(surface, intrinsic_delaunay, tensors),
                                 join_short_edges=True)
     warn_of_seams(operators, "nothing flows between them")
     most = operators.number_of_vertices()
@@ -238,9 +254,9 @@ def import_sparse(function: str) -> Any:
     return sparse
 
 
-def _make_operators(surface: Surface, mask: Any, intrinsic_delaunay: bool = False,
+def _make_operators(surface: Surface, mask: Any, roi: Any, intrinsic_delaunay: bool = False,
                     join_short_edges: bool = False) -> Any:
-    flags, on_faces = find_mask(mask, (surface.n_points, surface.n_faces))
+    flags, on_faces = find_mask(left_out(mask, roi, surface), (surface.n_points, surface.n_faces))
     return _core.Operators(surface._core, flags, on_faces, intrinsic_delaunay, join_short_edges,
                            None)
 

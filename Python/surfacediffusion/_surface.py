@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+import os
 import threading
+import weakref
 from typing import Any, Protocol, Sequence, Tuple, Union
 
 import numpy as np
@@ -197,6 +199,12 @@ def _as_polygons(faces: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         if array.ndim != 2 or array.shape[1] < 3:
             raise ValueError(f"faces has shape {array.shape}; {allowed}")
         sizes = np.full(array.shape[0], array.shape[1])
+        corners = array.shape[1] - 1
+        if array.size and corners >= 3 and (array[:, 0] == corners).all():
+            raise ValueError(f"faces has shape {array.shape} and {corners} in the whole first column; "
+                             f"allowed: faces[:, 1:] for faces of {corners} points, whose number comes "
+                             f"first as in PyVista, or list(faces) for faces of {corners + 1} points that "
+                             f"all begin with point {corners}")
         flat = array.reshape(-1)
     else:
         try:
@@ -215,6 +223,24 @@ def _as_polygons(faces: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         raise ValueError(f"faces has elements of type {flat.dtype}; allowed: integers")
     offsets = np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(sizes, dtype=np.int64)])
     return flat, offsets
+
+
+_surfaces: weakref.WeakSet[Surface] = weakref.WeakSet()
+_of_lost_threads: list[Any] = []  #: what they may have changed by half is neither used nor freed
+
+
+def _renew_after_fork() -> None:
+    """In a forked process, threads of the parent that were at work on a surface have left it locked."""
+    for surface in list(_surfaces):
+        if surface._lock.acquire(blocking=False):
+            surface._lock.release()
+            continue
+        _of_lost_threads.append(surface._runs)
+        surface._lock, surface._runs = threading.RLock(), {}
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_renew_after_fork)
 
 
 class Surface:
@@ -272,6 +298,7 @@ class Surface:
         self._runs: dict[str, Any] = {}
         self._refined: dict[tuple[float, int], Any] = {}  # the last one
         self._lock = threading.RLock()  # of a run: one call at a time
+        _surfaces.add(self)
 
     def _set_areas(self, areas: ArrayLike) -> NDArray[np.float64]:
         """Pass the areas on as factors of those of the triangles."""
@@ -335,10 +362,26 @@ class Surface:
 
     @property
     def vertex_areas(self) -> NDArray[np.float64]:
-        """The areas (n,) of the control cells of the points: the diagonal of the lumped mass matrix.
-        A third of the triangles at each point, or as given by `areas`, also for functions with
-        ``intrinsic_delaunay=True``."""
+        """The areas (n,) of the control cells of the points: the diagonal of the lumped mass matrix,
+        also with ``intrinsic_delaunay=True``. A third of the triangles at each point, or as given by
+        `areas`."""
         return self._triangle_areas() if self._areas is None else self._areas.copy()
+
+    @property
+    def area(self) -> float:
+        """The area of the surface, the sum of `vertex_areas`."""
+        return float(self.vertex_areas.sum())
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        """The normalised sums (n, 3) of the unit normals of the faces at each point; zero at points
+        without face. Outward if faces are counter-clockwise as seen from outside."""
+        sums = np.zeros((self.n_points, 3))
+        normals = self._face_normals()
+        for axis in range(3):
+            weights = np.repeat(normals[:, axis], np.diff(self._offsets))
+            sums[:, axis] = np.bincount(self._connectivity, weights, minlength=self.n_points)
+        return normalize(sums)
 
     def __repr__(self) -> str:
         return f"<Surface: {self.n_points} points, {self.n_faces} faces>"
@@ -347,14 +390,8 @@ class Surface:
         return _restore, (self._points, self._connectivity, self._offsets, self._areas)
 
     def _point_normals(self) -> NDArray[np.float32]:
-        """The normalised sums of the unit normals of the faces at each point, in single precision;
-        zero at points without face."""
-        sums = np.zeros((self.n_points, 3))
-        normals = self._face_normals()
-        for axis in range(3):
-            weights = np.repeat(normals[:, axis], np.diff(self._offsets))
-            sums[:, axis] = np.bincount(self._connectivity, weights, minlength=self.n_points)
-        return normalize(sums).astype(np.float32)
+        """The normals of the points in single precision."""
+        return self.normals.astype(np.float32)
 
     def _face_normals(self) -> NDArray[np.float64]:
         return unit_normals(self._points, self._connectivity, self._offsets)

@@ -780,7 +780,7 @@ class Reports(CommandTest):
 
     def test_what_cannot_be_printed_is_one_line(self):
         samples.write_gifti("größe\udcff.func.gii", {"one": NOISE})
-        command = [sys.executable, "-m", "surfacediffusion.command", "info", "größe\udcff.func.gii"]
+        command = [sys.executable, "-m", "surfacediffusion", "info", "größe\udcff.func.gii"]
         for encoding, word in (("ascii:strict", b"gr\\xf6\\xdfe\\udcff"),
                                ("utf-8:strict", "größe\\udcff".encode())):
             done = subprocess.run(command, capture_output=True, env={**os.environ, "PYTHONIOENCODING": encoding})

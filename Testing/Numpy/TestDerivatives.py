@@ -97,6 +97,7 @@ class Derivatives(unittest.TestCase):
         one = sd.gradient(surface, many[:, 35], smoothing_fwhm=4)
         np.testing.assert_allclose(found[:, 105:108], one, atol=1e-8)
         self.assertEqual(sd.laplacian(surface, x, result_on_faces=True).shape, (surface.n_faces,))
+        np.testing.assert_allclose(sd.laplacian(surface, x * x + y * y), 4.0, atol=1e-9)
         vectors = np.column_stack([x, -y, 0 * x, y, x, 0 * x])
         np.testing.assert_allclose(sd.divergence(surface, vectors), 0.0, atol=1e-12)
         np.testing.assert_allclose(sd.curl(surface, vectors), 0.0, atol=1e-12)
@@ -144,6 +145,8 @@ class Derivatives(unittest.TestCase):
         x = surface.points[:, 0]
         for call, text in (
             (lambda: sd.curl(surface, x), "vectors has 1 components; allowed with quantity"),
+            (lambda: sd.divergence(surface, np.zeros((len(x), 2, 3))),
+             f"vectors has shape ({len(x)}, 2, 3); allowed: ({len(x)}, 3) or ({len(x)}, 3 k), one row"),
             (lambda: sd.gradient(surface, x[:5]), "values has shape (5,); allowed: "),
             (lambda: sd.gradient(surface, x, smoothing_fwhm=-1), "smoothing_fwhm is -1"),
             (lambda: sd.gradient(surface, np.where(x == 3, np.inf, x)), "values is infinite at point 3"),

@@ -32,6 +32,23 @@ class TestFaces(unittest.TestCase):
         self.surface = sphere(4)
         self.noise = np.random.default_rng(0).normal(size=self.surface.n_faces)
 
+    def test_numbers_of_points_before_those_of_each_face_are_asked_about(self):
+        points = np.random.default_rng(1).normal(size=(20, 3))
+        for count in (3, 4):
+            padded = np.column_stack([np.full(5, count), np.arange(5 * count).reshape(5, count)])
+            message = rf"^faces has shape \(5, {count + 1}\) and {count} in the whole first column; .*list\("
+            with self.assertRaisesRegex(ValueError, message):
+                Surface(points, padded)
+            self.assertEqual(Surface(points, padded[:, 1:]).n_faces, 5)
+            self.assertEqual(len(Surface(points, list(padded)).faces[0]), count + 1)
+
+    def test_area_and_normals(self):
+        ball = sphere(5, radius=2.0)
+        self.assertAlmostEqual(ball.area, 16 * np.pi, delta=0.1)
+        np.testing.assert_allclose(ball.normals, ball.points / 2, atol=5e-3)
+        areas = np.full(ball.n_points, 0.5)
+        self.assertEqual(Surface(ball.points, ball.faces, areas).area, ball.n_points / 2)
+
     def test_results_have_the_shape_of_the_values_and_the_total(self):
         areas = face_areas(self.surface)
         for function in (heat, intrinsic_tv):

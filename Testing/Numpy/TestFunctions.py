@@ -789,6 +789,37 @@ class Threads(unittest.TestCase):
         child.join()
         np.testing.assert_allclose(result, 2 * expected, rtol=0, atol=1e-12)
 
+    @unittest.skipUnless(hasattr(os, "fork"), "needs fork")
+    @unittest.skipIf("libtsan" in os.environ.get("LD_PRELOAD", ""),
+                     "the thread sanitizer does not follow threads of a forked process")
+    def test_process_forked_during_a_call_is_not_locked(self):
+        surface = sd.sphere(4)
+        values = np.random.default_rng(1).normal(size=surface.n_points)
+        expected = sd.heat(surface, values, fwhm=0.5)
+        inside, done = threading.Event(), threading.Event()
+
+        def wait(_):
+            inside.set()
+            done.wait(300)
+
+        thread = threading.Thread(
+            target=sd.heat, args=(surface, 2 * values), kwargs=dict(fwhm=0.4, progress=wait))
+        thread.start()
+        inside.wait(300)
+        context = multiprocessing.get_context("fork")
+        queue = context.Queue()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of fork with threads
+            child = context.Process(target=smooth_in_child, args=(surface, values, queue))
+            child.start()
+        try:
+            np.testing.assert_array_equal(queue.get(timeout=60), expected)
+        finally:
+            done.set()
+            child.kill()
+            child.join()
+            thread.join()
+
 
 class Segment(unittest.TestCase):
     def test_cap_under_noise_has_its_area_and_boundary(self):

@@ -140,6 +140,10 @@ class Matrices(unittest.TestCase):
             on_faces = mask[faces].any(axis=1)
             np.testing.assert_allclose(
                 function((points, faces), mask=on_faces).toarray(), expected, rtol=0, atol=1e-14)
+            np.testing.assert_array_equal(function((points, faces), roi=~mask).toarray(),
+                                          function((points, faces), mask=mask).toarray())
+        with self.assertRaisesRegex(ValueError, "mask and roi are both given"):
+            sd.mass_matrix((points, faces), mask=mask, roi=mask)
         gradient = sd.gradient_matrix((points, faces), mask=mask)
         self.assertEqual(gradient.shape, (3 * len(faces), len(points)))
         used = np.diff(gradient.indptr).reshape(-1, 3)
@@ -180,6 +184,7 @@ class Modes(unittest.TestCase):
         self.assertEqual(found.eigenvalues[:2].tolist(), [0.0, 0.0])
         self.assertGreater(found.eigenvalues[2], 1.0)
         self.assertFalse(found.modes[mask].any())
+        np.testing.assert_array_equal(sd.eigenmodes((points, faces), 5, roi=~mask).modes, found.modes)
         left = points[:, 0] < 1.0
         for mode in found.modes.T:
             self.assertFalse(mode[left].any() and mode[~left].any())

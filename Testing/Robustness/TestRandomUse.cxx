@@ -156,13 +156,14 @@ bool IsFinite(vtkDataArray* array, vtkIdType point)
 }
 
 /// Whether the added arrays are finite; unused points keep their value, even NaN, derivatives are
-/// missing beside missing data, and distances are infinite where no source is near.
+/// missing beside missing data, and second ones at boundaries that do not determine them, and distances are infinite where no source is near.
 bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
 {
   vtkPolyData* const output = filter->GetOutput();
   bool spreads = false;
-  if (filter->IsA("vtkSurfaceDerivativesFilter"))
+  if (auto* const derivatives = vtkSurfaceDerivativesFilter::SafeDownCast(filter))
   {
+    spreads = derivatives->GetQuantity() == vtkSurfaceDerivativesFilter::QUANTITY_LAPLACIAN;
     vtkInformation* const chosen = filter->GetInputArrayInformation(0);
     const char* const name = chosen->Get(vtkDataObject::FIELD_NAME());
     vtkDataSetAttributes* arrays = input->GetCellData();
