@@ -7,6 +7,7 @@
 #include "Conversion/ThreadScope.h"
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Distributed/CellFlags.h"
+#include "Distributed/PackedPiece.h"
 #include "Distributed/PieceArrays.h"
 #include "Distributed/SurfacePieces.h"
 #include "Run/BlockSentences.h"
@@ -26,6 +27,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -58,18 +60,28 @@ bool HasVisibleCells(vtkPolyData* data)
       [](unsigned char flag) { return (flag & absent) == 0; });
 }
 
-/// When a filter, its inputs and their blocks were modified. own: that of the filter.
-std::vector<vtkMTimeType> FindTimes(vtkAlgorithm* filter, vtkMTimeType own)
+/// What a filter reads of its inputs, and when the filter and others of its inputs were modified. (ParaView
+/// copies the input for each time.) own: the time of the filter.
+Fingerprint FindState(vtkAlgorithm* filter, vtkMTimeType own)
 {
-  std::vector<vtkMTimeType> times = { own };
+  Fingerprint state;
+  state.AddNumber(static_cast<std::uint64_t>(own));
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
   {
     for (vtkDataObject* const data : ListLeaves(filter->GetInputDataObject(port, 0)))
     {
-      times.push_back(data->GetMTime());
+      vtkPolyData* const surface = port == 0 ? vtkPolyData::SafeDownCast(data) : nullptr;
+      if (surface)
+      {
+        state.Add(FingerprintPiece(filter, { 0, surface, nullptr }));
+      }
+      else
+      {
+        state.AddNumber(static_cast<std::uint64_t>(data->GetMTime()));
+      }
     }
   }
-  return times;
+  return state;
 }
 
 } // namespace
@@ -328,7 +340,7 @@ int vtkSurfaceFilter::RequestData(
   // Asked for another time or piece of the same input, the update would fail again.
   if (this->Private->HasFailed &&
     !Processes(this->Controller)
-       .Any(this->Private->FailedWith != FindTimes(this, this->Superclass::GetMTime())))
+       .Any(this->Private->FailedWith != FindState(this, this->Superclass::GetMTime())))
   {
     return this->EndUpdate();
   }
@@ -484,20 +496,22 @@ int vtkSurfaceFilter::EndUpdate()
   if (failed)
   {
     this->Private->QuietExecutive(this->GetExecutive());
-    this->Private->FailedWith = FindTimes(this, this->Superclass::GetMTime());
+    this->Private->FailedWith = FindState(this, this->Superclass::GetMTime());
   }
   return failed ? 0 : 1;
 }
 
 vtkMTimeType vtkSurfaceFilter::GetMTime()
 {
-  const vtkMTimeType own = this->Superclass::GetMTime();
-  if (!this->Private->HasFailed)
+  vtkMTimeType time = this->Superclass::GetMTime();
+  for (int port = 0; this->Private->HasFailed && port < this->GetNumberOfInputPorts(); ++port)
   {
-    return own;
+    for (vtkDataObject* const data : ListLeaves(this->GetInputDataObject(port, 0)))
+    {
+      time = std::max(time, data->GetMTime());
+    }
   }
-  const std::vector<vtkMTimeType> times = FindTimes(this, own);
-  return *std::max_element(times.begin(), times.end());
+  return time;
 }
 
 void vtkSurfaceFilter::ReleaseCache()

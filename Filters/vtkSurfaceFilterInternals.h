@@ -10,6 +10,7 @@
 #include "Distributed/GatheredSurfaces.h"
 #include "Distributed/ProcessReduction.h"
 #include "Distributed/SurfacePieces.h"
+#include "Run/Fingerprint.h"
 #include "Run/OwnedSettings.h"
 #include "Run/WarningLog.h"
 
@@ -17,7 +18,6 @@
 #include "vtkExecutive.h"
 #include "vtkNew.h"
 #include "vtkOutputWindow.h"
-#include "vtkType.h"
 #include "vtkWeakPointer.h"
 
 #include <cstring>
@@ -50,7 +50,7 @@ struct vtkSurfaceFilter::Internals
   bool IsComplete = true; ///< the present update, neither failed nor aborted
 
   bool HasFailed = false; ///< the last update, with an error that was reported
-  std::vector<vtkMTimeType> FailedWith; ///< when it and its inputs were modified
+  SurfaceDiffusion::Fingerprint FailedWith; ///< what the filter read then
 
   ~Internals()
   {

@@ -7,6 +7,7 @@ import importlib.metadata
 import importlib.util
 import pathlib
 import pkgutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -78,6 +79,20 @@ class Package(unittest.TestCase):
         self.assertEqual(set(texts), {"LICENSE", "NOTICE"})
         for text in ("Mozilla Public License, v. 2.0", "gitlab.com/libeigen", "Wenzel Jakob", "Thibaut Goetghebuer"):
             self.assertIn(text, texts["NOTICE"])
+
+    @unittest.skipUnless(sys.platform == "linux", "guards of ELF files")
+    def test_the_extension_has_guards_against_overwritten_memory(self):
+        content = next(FOLDER.glob("_core*.so")).read_bytes()
+        self.assertTrue(b"__stack_chk_fail" in content)
+        # The dynamic section of an ELF file of 64 bits: pairs of a tag and a number
+        table, size, count = (int.from_bytes(content[at:at + n], sys.byteorder)
+                              for at, n in ((32, 8), (54, 2), (56, 2)))
+        headers = [struct.unpack("=IIQQQQQQ", content[table + i * size:table + (i + 1) * size])
+                   for i in range(count)]
+        dynamic = next(content[at:at + length] for kind, _, at, _, _, length, _, _ in headers if kind == 2)
+        flags = dict(struct.iter_unpack("=qQ", dynamic))
+        self.assertTrue(flags.get(30, 0) & 8, "DT_FLAGS has no DF_BIND_NOW")
+        self.assertTrue(any(header[0] == 0x6474E552 for header in headers), "no PT_GNU_RELRO")
 
     def test_classes_of_vtk_are_an_error_that_says_where_they_are(self):
         if importlib.util.find_spec("vtkSurfaceDiffusion"):

@@ -10,7 +10,7 @@ from paraview import servermanager
 from paraview.simple import (
     Calculator, FVMHeatFilter, GetAnimationScene, IntrinsicTVFilter, MumfordShahFilter,
     SaveData, Sphere, XMLPolyDataReader)
-from plugin_testing import values
+from plugin_testing import errors_of, values
 
 
 class TestTimeSeries(unittest.TestCase):
@@ -86,6 +86,17 @@ class TestTimesOfARun(unittest.TestCase):
         scene = GetAnimationScene()
         scene.UpdateAnimationUsingDataTimeSteps()
         self.assertEqual(list(scene.TimeKeeper.TimestepValues), times)
+
+    def test_one_error_of_a_refused_filter_is_that_of_all_times(self):
+        data = Calculator(Sphere(), ResultArrayName="f", Function="coordsZ")
+        heat = FVMHeatFilter(data, GenerateTimeSteps=1, NumberOfThreads=-1)
+        errors = errors_of(heat)
+        for time in (0.0, 1.0, 2.0):
+            heat.UpdatePipeline(time)
+        self.assertEqual(len(errors), 1, errors)
+        data.Function = "coordsX"
+        heat.UpdatePipeline(1.0)
+        self.assertEqual(len(errors), 2, errors)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ and warnings. It is the update of vtkSurfaceFilter, in one process."""
 from __future__ import annotations
 
 import functools
+import hashlib
 from typing import Any, Callable, Iterable
 
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -19,7 +20,8 @@ from ._fields import (
     BY_INDEX, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement, mean_edge_length
-from ._surfaces import ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure
+from ._surfaces import (
+    ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure, to_numpy)
 
 #: Properties that are no settings of the extension, with their defaults.
 _OWN: dict[str, Any] = {
@@ -85,7 +87,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self._warnings: list[str] = []  # of this class, in the present update
         self._of_surfaces: list[str] = []
         self._quiet = 0  # no observer
-        self._failed_with: list[int] | None = None  # the times of an update that has failed
+        self._failed_with: list[Any] = []  # the state of an update that has failed
         choice = self.DEFAULT_CHOICE
         if choice is not None:
             self.SetInputArrayToProcess(
@@ -160,7 +162,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         for extra in made[1:]:
             extra.Initialize()
         parts = copy_structure(self._first_input(inputs), made[0])
-        if self._failed_with == self._find_times(inputs, parts):  # asked for another time or piece
+        if self._failed_with and self._failed_with == self._find_state(inputs, parts):  # at another time
             self._quiet_executive()
             return 0
         self.shapes.begin_update()
@@ -192,16 +194,30 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                 extra.Initialize()
         if self.GetReleaseDataFlag() or vtkDataObject.GetGlobalReleaseDataFlag():
             self.ReleaseCache()
-        self._failed_with = self._find_times(inputs, parts) if failure else None
+        self._failed_with = self._find_state(inputs, parts) if failure else []
         if failure:
             self._report_error(failure)
             return 0
         return 1
 
-    def _find_times(self, inputs: Any, parts: Parts) -> list[int]:
-        """When the filter and its inputs were modified."""
-        given = [block.input for block in parts.blocks] + [self._second_input(inputs)]
-        return [self.GetMTime()] + [data.GetMTime() for data in given if data is not None]
+    def _find_state(self, inputs: Any, parts: Parts) -> list[Any]:
+        """The contents of the surfaces, and when the filter and its second input were modified. (ParaView
+        copies the input for each time.)"""
+        digest = hashlib.sha1()
+        for block in parts.blocks:
+            data = block.input
+            arrays = [data.GetPoints().GetData()] if data.GetPoints() else []
+            for cells in (data.GetPolys(), data.GetStrips()):
+                arrays += [cells.GetOffsetsArray(), cells.GetConnectivityArray()]
+            for attributes in (data.GetPointData(), data.GetCellData()):
+                for i in range(attributes.GetNumberOfArrays()):
+                    array = attributes.GetArray(i)
+                    arrays += [] if array is None else [array]
+                    digest.update(f"{attributes.GetArrayName(i)} {attributes.IsArrayAnAttribute(i)}".encode())
+            for array in arrays:
+                digest.update(to_numpy(array).tobytes())
+        second = self._second_input(inputs)
+        return [self.GetMTime(), 0 if second is None else second.GetMTime(), digest.hexdigest()]
 
     def ReleaseCache(self) -> None:
         """Free what is kept from one update to the next."""
