@@ -38,8 +38,8 @@ public:
   GeodesicDistance::Arrival Find(const std::vector<SourcePiece>& sources, double cutoff,
     const ProgressMonitor& progress = ProgressMonitor()) const;
 
-  /// Whether Find() from one source over the whole mesh takes at most about a second, by the number of
-  /// triangles.
+  /// Whether Find() over the whole mesh takes at most about a second: the mesh has up to some 100,000
+  /// triangles, fewer if very many of them share a vertex. Further sources make the work less.
   static bool TakesAtMostASecond(const TriangleMesh& mesh);
 
 private:
