@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geodesics/GeodesicWindow.h"
 
-#include <array>
-
 namespace SurfaceDiffusion
 {
 
@@ -19,7 +17,7 @@ enum class Shorter
   Second,
   FirstThenSecond,
   SecondThenFirst,
-  Unknown
+  InTurns ///< it changes on both sides of a place
 };
 
 struct Comparison
@@ -28,20 +26,23 @@ struct Comparison
   double Change = 0.0; ///< where it changes
 };
 
-/// The lower bound of a function whose derivative is between -fall and rise, from its values at the
-/// ends of an interval.
-double LowerBound(double atBegin, double atEnd, double fall, double rise, double width)
+/// The place on the edge beside which the difference of two distances is even more or less, if there
+/// is one: it lies between the places, two at most, where both distances are equal.
+double PlaceBetweenChanges(const Window& a, const Window& b)
 {
-  if (fall <= 0.0)
+  if (a.IsStrip || b.IsStrip)
   {
-    return atBegin;
+    // Where the derivatives are the same: that of a strip is the same everywhere
+    const Window& point = a.IsStrip ? b : a;
+    const double slope = a.IsStrip ? a.X : b.X;
+    return point.IsStrip
+      ? point.Begin
+      : point.X + point.Y * slope / std::sqrt(std::max(0.0, 1.0 - slope * slope));
   }
-  if (rise <= 0.0)
-  {
-    return atEnd;
-  }
-  const double down = (atBegin - atEnd + rise * width) / (fall + rise);
-  return atBegin - fall * std::clamp(down, 0.0, width);
+  // Both distances are equal at roots of a polynomial of degree two; this is its extremum.
+  const double across = b.X - a.X, start = b.Start - a.Start;
+  const double square = (start - across) * (start + across);
+  return a.X + 0.5 * across * (1.0 + (a.Y - b.Y) * (a.Y + b.Y) / square);
 }
 
 /// Where both distances are equal, between places where their difference has opposite signs.
@@ -77,41 +78,39 @@ double FindChange(const Window& a, const Window& b, double begin, double end, do
   return x;
 }
 
-Comparison Compare(const Window& a, const Window& b, double begin, double end)
+/// roundOff: the part of the distance within which they count as equal; windows that are past are
+/// shorter then.
+Comparison Compare(const Window& a, const Window& b, double begin, double end, double roundOff)
 {
   const auto at = [](const Window& w, double x) {
     return x == w.Begin ? w.AtBegin : x == w.End ? w.AtEnd : w.At(x);
   };
-  const double aBegin = at(a, begin), aEnd = at(a, end), bBegin = at(b, begin), bEnd = at(b, end);
-  const double atBegin = aBegin - bBegin, atEnd = aEnd - bEnd;
+  const double aBegin = at(a, begin);
+  const double tolerance = roundOff * aBegin;
+  const double favour = tolerance * (int(b.IsPast) - int(a.IsPast));
+  const double atBegin = aBegin - at(b, begin) + favour, atEnd = at(a, end) - at(b, end) + favour;
   if ((atBegin < 0.0 && atEnd > 0.0) || (atBegin > 0.0 && atEnd < 0.0))
   {
-    constexpr double roundOff = 1e-15;
     return { atBegin < 0.0 ? Shorter::FirstThenSecond : Shorter::SecondThenFirst,
-      FindChange(a, b, begin, end, atBegin, atEnd, roundOff * aBegin) };
+      FindChange(a, b, begin, end, atBegin, atEnd, tolerance) };
   }
-  // Windows that are equally long but for round-off count as such. The derivatives of both
-  // distances grow along the edge.
-  const double tolerance = 1e-15 * (aBegin + aEnd);
-  const double fallOfA = a.SlopeAt(end, aEnd) - b.SlopeAt(begin, bBegin);
-  const double fallOfB = b.SlopeAt(end, bEnd) - a.SlopeAt(begin, aBegin);
-  if (atBegin <= 0.0 && atEnd <= 0.0 &&
-    LowerBound(-atBegin, -atEnd, fallOfA, fallOfB, end - begin) >= -tolerance)
+  const bool first = atBegin + atEnd <= 0.0;
+  const double between = PlaceBetweenChanges(a, b);
+  if (between > begin && between < end)
   {
-    return { Shorter::First };
+    const double difference = a.At(between) - b.At(between) + favour;
+    if (first ? difference > tolerance : difference < -tolerance)
+    {
+      return { Shorter::InTurns, between };
+    }
   }
-  if (atBegin >= 0.0 && atEnd >= 0.0 &&
-    LowerBound(atBegin, atEnd, fallOfB, fallOfA, end - begin) >= -tolerance)
-  {
-    return { Shorter::Second };
-  }
-  return { Shorter::Unknown };
+  return { first ? Shorter::First : Shorter::Second };
 }
 
 bool ComeFromOnePlace(const Window& a, const Window& b)
 {
   constexpr double roundOff = 2e-13;
-  if (a.Source != b.Source || a.IsStrip != b.IsStrip)
+  if (a.Source != b.Source || a.IsStrip != b.IsStrip || a.IsPast != b.IsPast)
   {
     return false;
   }
@@ -122,16 +121,22 @@ bool ComeFromOnePlace(const Window& a, const Window& b)
 
 } // namespace
 
-void KeepShortestWindows(std::vector<Window>& windows, double length)
+void KeepShortestWindows(
+  std::vector<Window>& windows, double length, double roundOff, WindowBuffers& buffers)
 {
-  if (windows.size() < 2)
+  const double least = 1e-14 * length;
+  const auto before = [](const Window& a, const Window& b) { return a.Begin < b.Begin; };
+  if (!std::is_sorted(windows.begin(), windows.end(), before))
+  {
+    std::sort(windows.begin(), windows.end(), before);
+  }
+  const auto meet = [&](const Window& a, const Window& b)
+  { return b.Begin < a.End - least || (b.Begin < a.End + least && ComeFromOnePlace(a, b)); };
+  if (std::adjacent_find(windows.begin(), windows.end(), meet) == windows.end())
   {
     return;
   }
-  const double least = 1e-14 * length;
-  const auto before = [](const Window& a, const Window& b) { return a.Begin < b.Begin; };
-  std::sort(windows.begin(), windows.end(), before);
-  thread_local std::vector<Window> kept, later;
+  auto& [kept, later] = buffers;
   kept.clear();
   later.clear();
   const auto insert = [&](const Window& w)
@@ -182,11 +187,14 @@ void KeepShortestWindows(std::vector<Window>& windows, double length)
         kept.push_back(w);
         break;
       }
-      const Comparison comparison = Compare(last, w, w.Begin, end);
-      if (comparison.Which == Shorter::Unknown)
+      const Comparison comparison = Compare(last, w, w.Begin, end, roundOff);
+      if (comparison.Which == Shorter::InTurns)
       {
-        kept.push_back(w);
-        break;
+        Window rest = w;
+        rest.SetBegin(comparison.Change);
+        insert(rest);
+        w.SetEnd(comparison.Change);
+        continue;
       }
       if (comparison.Which == Shorter::First || comparison.Which == Shorter::FirstThenSecond)
       {

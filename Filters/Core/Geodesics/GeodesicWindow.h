@@ -24,6 +24,7 @@ struct GeodesicWindow
   double AtBegin, AtEnd; ///< the distances at the ends of the interval
   Index Source;
   bool IsStrip;
+  bool IsPast; ///< it has gone over the triangle
 
   /// The distance at the place x of the edge.
   double At(double x) const
@@ -31,16 +32,6 @@ struct GeodesicWindow
     return this->IsStrip
       ? this->Start - this->X * x
       : this->Start + std::sqrt((x - this->X) * (x - this->X) + this->Y * this->Y);
-  }
-  /// Its derivative, where the distance is known.
-  double SlopeAt(double x, double distance) const
-  {
-    if (this->IsStrip)
-    {
-      return -this->X;
-    }
-    const double radius = distance - this->Start;
-    return radius > 0.0 ? std::clamp((x - this->X) / radius, -1.0, 1.0) : 1.0;
   }
   /// The x-component of the way through the place x of the edge, whose y-component is -Y.
   double WayX(double x) const { return this->IsStrip ? -this->X : x - this->X; }
@@ -83,10 +74,17 @@ struct GeodesicWindow
   }
 };
 
+/// Memory for KeepShortestWindows().
+struct WindowBuffers
+{
+  std::vector<GeodesicWindow> Kept, Later;
+};
+
 /// Cut windows on one edge, of the given length, so that where several of them overlap the one with
 /// the shortest distance stays, and sort them along the edge. Windows that end at each other and
-/// come from one place of the plane become one. Nothing that is shortest is lost: where it is not
-/// certain which one is shorter, both stay.
-void KeepShortestWindows(std::vector<GeodesicWindow>& windows, double length);
+/// come from one place of the plane become one. Distances that differ by less than the part roundOff
+/// count as equal, and windows that are past stay then.
+void KeepShortestWindows(
+  std::vector<GeodesicWindow>& windows, double length, double roundOff, WindowBuffers& buffers);
 
 } // namespace SurfaceDiffusion

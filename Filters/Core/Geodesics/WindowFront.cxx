@@ -17,6 +17,30 @@ using Window = GeodesicWindow;
 constexpr double Never = std::numeric_limits<double>::infinity();
 const double Pi = std::acos(-1.0);
 
+/// Whether ways by an end of the edge are shorter everywhere in a window.
+bool IsUseless(
+  const Window& window, double length, double timeAtBegin, double timeAtEnd, double margin)
+{
+  return timeAtBegin + window.End < window.AtEnd - margin ||
+    timeAtEnd + (length - window.Begin) < window.AtBegin - margin;
+}
+
+/// Whether the apex lies beside a window by no more than round-off. atEnd: the distance at the end
+/// of the window there. beside: the vector product of the way through that end with the vector from
+/// there to the apex. The way may turn at the end by an angle of 1e-10, or of round-off over the
+/// length of the way to there, and is longer by its square then.
+bool Touches(const Window& w, const EdgeFrames::Frame& frame, double atEnd, double beside)
+{
+  constexpr double angle = 1e-10, roundOff = 1e-14;
+  if (w.IsStrip)
+  {
+    return beside <= angle * (frame.LeftLength + frame.RightLength);
+  }
+  const double x = frame.X - w.X, y = frame.Y - w.Y;
+  const double side = angle * (atEnd - w.Start) + roundOff * frame.Length;
+  return beside <= side * (std::abs(x) + y) && beside <= side * std::sqrt(x * x + y * y);
+}
+
 } // namespace
 
 WindowFront::WindowFront(const TriangleMesh& mesh, const EdgeFrames& frames, double cutoff)
@@ -27,6 +51,7 @@ WindowFront::WindowFront(const TriangleMesh& mesh, const EdgeFrames& frames, dou
   , Cutoff(cutoff)
   , Ways(this->Times.size())
   , WaitingAt(3 * static_cast<std::size_t>(mesh.NumberOfTriangles()), -1)
+  , TimesCrossed(this->WaitingAt.size(), 0)
 {
 }
 
@@ -68,7 +93,8 @@ void WindowFront::GoOver(Index edge, bool reversed, std::uint32_t behind, const 
         }
         place = this->Free.back();
         this->Free.pop_back();
-        this->Pool[static_cast<std::size_t>(place)].Least = Never;
+        Waiting& waiting = this->Pool[static_cast<std::size_t>(place)];
+        waiting.Least = waiting.Queued = Never;
       }
       Waiting& waiting = this->Pool[static_cast<std::size_t>(place)];
       waiting.Windows.push_back(window);
@@ -76,26 +102,36 @@ void WindowFront::GoOver(Index edge, bool reversed, std::uint32_t behind, const 
       {
         waiting.Windows.back().Mirror(this->Frames[other].Length);
       }
-      if (least < waiting.Least)
+      waiting.Least = std::min(waiting.Least, least);
+      if (!waiting.IsChanged)
       {
-        waiting.Least = least;
-        this->Queue.emplace(least, other);
+        waiting.IsChanged = true;
+        this->Changed.push_back(other);
       }
     });
 }
 
-bool WindowFront::IsUseless(
-  const Window& window, double length, double timeAtBegin, double timeAtEnd, double margin) const
+void WindowFront::QueueChanged()
 {
-  return timeAtBegin + window.End < window.AtEnd - margin ||
-    timeAtEnd + (length - window.Begin) < window.AtBegin - margin;
+  for (const Index edge : this->Changed)
+  {
+    Waiting& waiting =
+      this->Pool[static_cast<std::size_t>(this->WaitingAt[static_cast<std::size_t>(edge)])];
+    waiting.IsChanged = false;
+    if (waiting.Least < waiting.Queued)
+    {
+      waiting.Queued = waiting.Least;
+      this->Queue.emplace(waiting.Least, edge);
+    }
+  }
+  this->Changed.clear();
 }
 
 void WindowFront::Run(const ProgressMonitor& progress)
 {
   std::vector<Window> windows;
   long long steps = 0;
-  while (!this->Queue.empty())
+  for (this->QueueChanged(); !this->Queue.empty(); this->QueueChanged())
   {
     const auto [least, edge] = this->Queue.top();
     this->Queue.pop();
@@ -126,43 +162,93 @@ void WindowFront::Run(const ProgressMonitor& progress)
   }
 }
 
+std::vector<Window>* WindowFront::PastAt(Index edge, double& roundOff)
+{
+  constexpr unsigned char often = 4, most = 64;
+  unsigned char& times = this->TimesCrossed[static_cast<std::size_t>(edge)];
+  roundOff = 1e-14;
+  if (times < often)
+  {
+    ++times;
+    return nullptr;
+  }
+  roundOff = times < most ? 1e-12 : 1e-11;
+  times = std::min<unsigned char>(most, static_cast<unsigned char>(times + 1));
+  return &this->Past[edge];
+}
+
 void WindowFront::CrossTriangle(Index edge, std::vector<Window>& windows)
 {
   const EdgeFrames::Frame& frame = this->Frames[edge];
-  const double atBegin = this->TimeAt(CornerAfter(edge, 1)),
-               atEnd = this->TimeAt(CornerAfter(edge, 2));
+  const Index begin = CornerAfter(edge, 1), end = CornerAfter(edge, 2);
+  const double atBegin = this->TimeAt(begin), atEnd = this->TimeAt(end);
   const double margin = 2e-14 * (windows[0].AtBegin + frame.Length);
+  double roundOff = 0.0;
+  std::vector<Window>* const past = this->PastAt(edge, roundOff);
+  bool byBegin = false, byEnd = false;
   const auto useless = [&](const Window& w)
-  { return this->IsUseless(w, frame.Length, atBegin, atEnd, margin); };
+  {
+    if (IsUseless(w, frame.Length, atBegin, atEnd, margin))
+    {
+      return true;
+    }
+    if (!past)
+    {
+      return false;
+    }
+    // Ways that are hardly shorter than those by a vertex turn there.
+    const double gain = roundOff * (w.AtBegin + frame.Length);
+    const bool nearBegin = atBegin + w.End < w.AtEnd + gain;
+    const bool nearEnd = !nearBegin && atEnd + (frame.Length - w.Begin) < w.AtBegin + gain;
+    byBegin = byBegin || nearBegin;
+    byEnd = byEnd || nearEnd;
+    return nearBegin || nearEnd;
+  };
   windows.erase(std::remove_if(windows.begin(), windows.end(), useless), windows.end());
-  KeepShortestWindows(windows, frame.Length);
+  if (byBegin)
+  {
+    this->LeaveEverywhere(this->VertexAt(begin));
+  }
+  if (byEnd)
+  {
+    this->LeaveEverywhere(this->VertexAt(end));
+  }
+  if (past)
+  {
+    windows.insert(windows.end(), past->begin(), past->end());
+  }
+  KeepShortestWindows(windows, frame.Length, roundOff, this->Buffers);
+  if (past)
+  {
+    *past = windows;
+    std::for_each(past->begin(), past->end(), [](Window& w) { w.IsPast = true; });
+  }
   for (const Window& w : windows)
   {
+    if (w.IsPast)
+    {
+      continue;
+    }
     // The apex from the ways through both ends of the window, of which the one through the begin is
     // the left one
     const double beginX = w.WayX(w.Begin), endX = w.WayX(w.End), wayY = -w.Y;
     const double fromBegin = beginX * frame.Y - wayY * (frame.X - w.Begin);
     const double fromEnd = endX * frame.Y - wayY * (frame.X - w.End);
-    bool sees = fromBegin <= 0.0 && fromEnd >= 0.0;
-    const double toX = w.IsStrip ? 0.0 : frame.X - w.X, toY = w.IsStrip ? 0.0 : frame.Y - w.Y;
-    const double radius = std::sqrt(toX * toX + toY * toY);
-    const double atApex = w.IsStrip ? w.Start - w.X * frame.X - w.Y * frame.Y : w.Start + radius;
-    bool nearly = sees;
-    if (!sees)
+    const bool sees = fromBegin <= 0.0 && fromEnd >= 0.0;
+    double atApex = Never;
+    if (sees ||
+      Touches(w, frame, fromBegin > 0.0 ? w.AtBegin : w.AtEnd, std::max(fromBegin, -fromEnd)))
     {
-      // Beside a window, round-off is bridged
-      const double tolerance = w.IsStrip ? 1e-10 * (frame.LeftLength + frame.RightLength)
-                                         : radius *
-          (1e-10 * ((fromBegin > 0.0 ? w.AtBegin : w.AtEnd) - w.Start) + 1e-14 * frame.Length);
-      nearly = fromBegin > 0.0 ? fromBegin <= tolerance : -fromEnd <= tolerance;
-    }
-    if (nearly && atApex < this->TimeAt(edge))
-    {
-      // The angle at the apex, to the left edge
-      const double wayX = w.IsStrip ? -w.X : toX, y = w.IsStrip ? -w.Y : toY;
-      const double angle =
-        std::max(0.0, std::atan2(frame.X * y - frame.Y * wayX, frame.X * wayX + frame.Y * y));
-      this->Reach(this->Mesh.TriangleVertices().data()[edge], atApex, w.Source, { edge, angle });
+      const double wayToX = w.IsStrip ? -w.X : frame.X - w.X;
+      const double wayToY = w.IsStrip ? -w.Y : frame.Y - w.Y;
+      atApex = w.IsStrip ? w.Start + wayToX * frame.X + wayToY * frame.Y
+                         : w.Start + std::sqrt(wayToX * wayToX + wayToY * wayToY);
+      if (atApex < this->TimeAt(edge))
+      {
+        const double angle =
+          std::atan2(frame.X * wayToY - frame.Y * wayToX, frame.X * wayToX + frame.Y * wayToY);
+        this->Reach(this->VertexAt(edge), atApex, w.Source, { edge, std::max(0.0, angle) });
+      }
     }
     if (fromBegin < 0.0)
     {
@@ -207,11 +293,12 @@ void WindowFront::CrossCorner(
   next.Start = w.Start;
   next.Source = w.Source;
   next.IsStrip = w.IsStrip;
+  next.IsPast = false;
   next.AtBegin = next.At(next.Begin);
   next.AtEnd = seesApex ? atApex : next.At(next.End);
   const double atBegin = this->TimeAt(CornerAfter(edge, left ? 1 : 2)), atEnd = this->TimeAt(edge);
   const double margin = 2e-14 * (next.AtBegin + frame.Length);
-  if (this->IsUseless(next, length, atBegin, atEnd, margin))
+  if (IsUseless(next, length, atBegin, atEnd, margin))
   {
     return;
   }
@@ -254,14 +341,25 @@ void WindowFront::LeaveCorner(Index corner, double from, double to, double start
   w.Start = start;
   w.Source = source;
   w.IsStrip = false;
+  w.IsPast = false;
   w.AtBegin = w.At(w.Begin);
   w.AtEnd = w.At(w.End);
   const double margin = 2e-14 * (w.AtBegin + frame.Length);
   if (w.End > w.Begin &&
-    !this->IsUseless(w, frame.Length, this->TimeAt(CornerAfter(corner, 1)),
+    !IsUseless(w, frame.Length, this->TimeAt(CornerAfter(corner, 1)),
       this->TimeAt(CornerAfter(corner, 2)), margin))
   {
     this->GoOver(corner, false, this->Frames.Behind(corner), w);
+  }
+}
+
+void WindowFront::LeaveEverywhere(Index vertex)
+{
+  Incoming& way = this->Ways[static_cast<std::size_t>(vertex)];
+  if (way.Corner >= 0 && this->Frames.PassingAt(vertex) != EdgeFrames::Passing::All)
+  {
+    way.Corner = -1;
+    this->Queue.emplace(this->Times[static_cast<std::size_t>(vertex)], -1 - vertex);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <queue>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -33,7 +34,9 @@ private:
   struct Waiting
   {
     std::vector<GeodesicWindow> Windows;
-    double Least;
+    double Least = 0.0;
+    double Queued = 0.0; ///< the least distance when the edge was put into the queue
+    bool IsChanged = false; ///< since then
   };
   /// From where a way comes to a vertex.
   struct Incoming
@@ -52,17 +55,21 @@ private:
   void ReachFrom(Index corner, const Eigen::Vector2d& place, Index source);
   /// A way to a vertex. Returns whether it is shorter than those known.
   bool Reach(Index vertex, double time, Index source, const Incoming& incoming);
+  /// Ways from a vertex in all directions, whatever way leads there.
+  void LeaveEverywhere(Index vertex);
   void LeaveVertex(Index vertex);
   /// Ways from a corner of a triangle over the edge opposite, between angles from the edge to the
   /// next corner.
   void LeaveCorner(Index corner, double from, double to, double start, Index source);
+  /// Windows that have gone over the triangle; null: they are not kept here.
+  std::vector<GeodesicWindow>* PastAt(Index edge, double& roundOff);
   void CrossTriangle(Index edge, std::vector<GeodesicWindow>& windows);
   void CrossCorner(
     Index edge, bool left, const GeodesicWindow& window, bool seesApex, double atApex);
-  bool IsUseless(const GeodesicWindow& window, double length, double timeAtBegin, double timeAtEnd,
-    double margin) const;
   /// Puts a window, in the direction of `edge` or reversed, behind it.
   void GoOver(Index edge, bool reversed, std::uint32_t behind, const GeodesicWindow& window);
+  /// Puts edges that windows have come to into the queue.
+  void QueueChanged();
   Index VertexAt(Index corner) const { return this->Mesh.TriangleVertices().data()[corner]; }
   double TimeAt(Index corner) const
   {
@@ -74,10 +81,16 @@ private:
   double Cutoff;
   std::vector<Incoming> Ways; ///< per vertex
   std::vector<Index> WaitingAt; ///< per edge; -1: none
+  /// Per edge; windows past are kept at the few that many come to again and again: beside needles,
+  /// and where ways branch at edges of many triangles. Otherwise these would multiply.
+  std::vector<unsigned char> TimesCrossed;
+  std::unordered_map<Index, std::vector<GeodesicWindow>> Past;
   std::vector<Waiting> Pool;
   std::vector<Index> Free;
   using Event = std::pair<double, Index>; ///< an edge, or -1 - vertex
   std::priority_queue<Event, std::vector<Event>, std::greater<>> Queue;
+  std::vector<Index> Changed; ///< edges whose windows have changed
+  WindowBuffers Buffers;
   Index NumberReached = 0;
 };
 

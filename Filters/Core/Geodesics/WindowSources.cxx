@@ -111,7 +111,7 @@ void WindowFront::LeavePoint(
     {
       const EdgeFrames::Frame& frame = this->Frames[edge];
       const Vector2d place = Place(frame, at, edge);
-      Window w{ 0.0, frame.Length, place[0], -place[1], 0.0, 0.0, 0.0, source, false };
+      Window w{ 0.0, frame.Length, place[0], -place[1], 0.0, 0.0, 0.0, source, false, false };
       w.AtBegin = w.At(w.Begin);
       w.AtEnd = w.At(w.End);
       this->GoOver(edge, false, this->Frames.Behind(edge), w);
@@ -146,7 +146,7 @@ void WindowFront::AddStrips(const SourcePiece& piece, Index source)
     const double a = from[0] - way[0] * from[1] / way[1], b = to[0] - way[0] * to[1] / way[1];
     Window w{ std::clamp(std::min(a, b), 0.0, frame.Length),
       std::clamp(std::max(a, b), 0.0, frame.Length), -way[0], way[1], -from.dot(way), 0.0, 0.0,
-      source, true };
+      source, true, false };
     w.AtBegin = w.At(w.Begin);
     w.AtEnd = w.At(w.End);
     if (w.End > w.Begin)
