@@ -56,7 +56,8 @@
  * of an edge, half of the error.
  *
  * The distance is the smallest of those of each source alone; with Heat only nearly so, and
- * NearestSource is that of Automatic.
+ * NearestSource is that of Automatic. With speeds, points of input array 0 that are neighbours and
+ * have one value are one source, whose front is plane between them.
  *
  * Ways end at boundaries, and go around their corners. Where three or more triangles share an edge,
  * ways go on from each of them to all others. With ComputeGradient, `DistanceGradient` or

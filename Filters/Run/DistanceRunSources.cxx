@@ -4,6 +4,7 @@
 // The sources and speeds of a DistanceRun.
 #include "Run/DistanceRun.h"
 
+#include "Core/Foundation/DisjointSets.h"
 #include "Run/CellFields.h"
 
 #include <algorithm>
@@ -76,6 +77,44 @@ std::vector<double> MakeSlowness(const Surface& surface, const Fields& fields)
   }
   RequireFinite(fields.Speeds.Values, "SpeedArray", fields.Speeds.OnCells, true, counts);
   return slowness;
+}
+
+/// Neighbours of one name get one label: their front is plane, as speeds that change across it want it.
+void JoinNeighbours(
+  const TriangleMesh& mesh, const std::vector<double>& names, std::vector<SourcePiece>& pieces)
+{
+  std::map<Index, Index> pieceAt; // vertices
+  for (std::size_t k = 0; k < pieces.size(); ++k)
+  {
+    const auto corner = std::find(pieces[k].From.begin(), pieces[k].From.end(), 1.0);
+    if (corner != pieces[k].From.end())
+    {
+      const auto a = static_cast<Eigen::Index>(corner - pieces[k].From.begin());
+      pieceAt.emplace(mesh.TriangleVertices()(pieces[k].Triangle, a), static_cast<Index>(k));
+    }
+  }
+  DisjointSets sets(static_cast<Index>(pieces.size()));
+  for (const auto& [vertex, k] : pieceAt)
+  {
+    const auto v = static_cast<std::size_t>(vertex);
+    for (Index c = mesh.VertexCornersBegin()[v]; c < mesh.VertexCornersBegin()[v + 1]; ++c)
+    {
+      const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(c)];
+      for (const int step : { 1, 2 })
+      {
+        const auto other = pieceAt.find(mesh.OtherCorner(corner, step));
+        if (other != pieceAt.end() &&
+          names[static_cast<std::size_t>(other->second)] == names[static_cast<std::size_t>(k)])
+        {
+          sets.Join(k, other->second);
+        }
+      }
+    }
+  }
+  for (std::size_t k = 0; k < pieces.size(); ++k)
+  {
+    pieces[k].Label = sets.Find(static_cast<Index>(k));
+  }
 }
 
 } // namespace
@@ -237,13 +276,18 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
 DistanceRun::SourceSet DistanceRun::FindSources(const BlockInput& input, const Fields& fields,
   double maximumDistance, const ProgressMonitor& progress)
 {
-  if (!fields.Sources)
+  const SourceShapes* const shapes = fields.Sources.get();
+  if (shapes && shapes->OfPoints.empty() && shapes->OfTriangles.empty())
   {
-    return this->FindMarked(fields);
+    return this->FindProjected(input, *shapes, maximumDistance, progress);
   }
-  const bool arePlaced = !fields.Sources->OfPoints.empty() || !fields.Sources->OfTriangles.empty();
-  return arePlaced ? this->FindPlaced(*fields.Sources)
-                   : this->FindProjected(input, *fields.Sources, maximumDistance, progress);
+  SourceSet set = shapes ? this->FindPlaced(*shapes) : this->FindMarked(fields);
+  if (!this->Shapes.empty())
+  {
+    JoinNeighbours(
+      *this->MeshOfSolvers, shapes ? std::vector<double>(set.Names.size()) : set.Names, set.Pieces);
+  }
+  return set;
 }
 
 } // namespace SurfaceDiffusion

@@ -59,7 +59,8 @@ def distance(
     e1, and e2 across them in the tangent plane, grad T . D grad T = 1 with
     D = speed^2 (along_speed^2 e1 e1^T + across_speed^2 e2 e2^T).
 
-    Each source counts for itself: the distance is the smallest of those from each alone.
+    Each source counts for itself: the distance is the smallest of those from each alone. With speeds,
+    points that are neighbours on the surface are one source, whose front is plane between them.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// The area of a component in squares of its longest edge, below which it is refined, and in squares
 /// of the longest edge that stays then.
-constexpr double FewSquares = 100.0;
+constexpr double FewSquares = 40.0;
 constexpr double EnoughSquares = 1500.0;
 
 /// Refinement ends with this many triangles, or four times the given ones.

@@ -13,7 +13,7 @@ namespace SurfaceDiffusion
 /// GeodesicDistance from pieces of sources, on any surface. Where triangles are few, their edges are
 /// bisected first, which does not change the surface: fronts that meet behind a vertex, and an intrinsic
 /// Delaunay triangulation whose triangles have a vertex at two corners, would make distances far too
-/// short. A component whose longest edge is above a tenth of the root of its area is cut until no edge
+/// short. A component whose longest edge is above a sixth of the root of its area is cut until no edge
 /// is above a 39th. Surfaces without such components stay as they are.
 class EikonalDistance
 {

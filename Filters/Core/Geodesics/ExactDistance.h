@@ -38,8 +38,9 @@ public:
   GeodesicDistance::Arrival Find(const std::vector<SourcePiece>& sources, double cutoff,
     const ProgressMonitor& progress = ProgressMonitor()) const;
 
-  /// Whether Find() from one source over the whole mesh takes at most about a second, by the number of
-  /// triangles; or as often as that.
+  /// Whether Find() over the whole mesh, or as often as `times` says, takes at most about a second: the
+  /// mesh has up to some 100,000 triangles, fewer if very many of them share a vertex. Further sources
+  /// make the work less.
   static bool TakesAtMostASecond(const TriangleMesh& mesh, double times = 1.0);
 
 private:
