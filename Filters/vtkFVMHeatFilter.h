@@ -37,7 +37,8 @@
  * Numer. Anal. 15, 1978), six solves with one matrix. The variance of its kernel is exact. The
  * error is at most 0.14 % of an eigenfunction as it was before the step, and 0.5 % (root mean
  * square) of the result for white noise, where three steps of SecondOrder, of six solves, too, are
- * off by 7 %. Data on cells are off by up to 1 %. It keeps the range of the data up to 5e-4 of it.
+ * off by 7 %. Data on cells are off by up to 1 %. It keeps the range of the data up to 5e-4 of it,
+ * but for triangles with obtuse angles at boundaries.
  * One FirstOrder step of 2/k^2 is the implicit filter by scale of order 1, (1 - 2/k^2 Laplace) u =
  * f, which leaves a third of waves of the wave number k.
  *

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -18,6 +19,22 @@ namespace
 
 /// The default of SmoothingLength, in mean edge lengths.
 constexpr double DefaultSmoothing = 4.0;
+
+/// The connected components without a line.
+Index CountZeroParts(const TriangleMesh& mesh, const TangentVectors& field)
+{
+  const std::vector<Index>& begin = mesh.ComponentsBegin();
+  std::vector<char> hasLine(static_cast<std::size_t>(mesh.NumberOfComponents()), 0);
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    if ((field.row(t).array() != 0.0).any())
+    {
+      const auto end = std::upper_bound(begin.begin(), begin.end(), mesh.TriangleVertices()(t, 0));
+      hasLine[static_cast<std::size_t>(end - begin.begin() - 1)] = 1;
+    }
+  }
+  return static_cast<Index>(std::count(hasLine.begin(), hasLine.end(), 0));
+}
 
 double RadiansFromDegrees(double degrees)
 {
@@ -135,6 +152,11 @@ void DirectionFieldRun::MakeField(
     this->Domain->MakeTriangles(), hints, core, this->Parallel, progress, &this->Report);
   this->WithoutDirection = static_cast<Index>((this->Field.array() == 0.0).rowwise().all().count());
   this->Method = settings.Method;
+  this->Parts = mesh.NumberOfComponents();
+  this->PartsWithoutCurvature = settings.Method == DirectionMethod::PrincipalCurvature ||
+      settings.Method == DirectionMethod::CurvatureAligned
+    ? CountZeroParts(mesh, this->Field)
+    : 0;
 }
 
 std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
@@ -150,7 +172,21 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
         << ", where the field is 0: directions along the surface spread across edges and fade",
       inputs });
   }
-  if (this->WithoutDirection > 0 && this->Method == DirectionMethod::PrincipalCurvature)
+  if (this->PartsWithoutCurvature > 0)
+  {
+    Sentence sentence("the surface has");
+    if (this->Parts > 1)
+    {
+      sentence = Sentence();
+      sentence << this->PartsWithoutCurvature << " of " << this->Parts << " parts have";
+    }
+    sentence << " no direction of curvature: flat, or of the size of "
+             << Word::Setting("SmoothingLength") << " (for a field there, set "
+             << Word::Setting("Method") << " to "
+             << Word::Choice("Method", DirectionMethod::Smooth, "Smooth") << ")";
+    warnings.push_back({ sentence, inputs });
+  }
+  else if (this->WithoutDirection > 0 && this->Method == DirectionMethod::PrincipalCurvature)
   {
     Sentence text;
     text << this->WithoutDirection << triangles

@@ -48,6 +48,8 @@ private:
   TangentVectors Field; ///< before the rotation by Angle
   Index WithoutDirection = 0; ///< triangles where it is 0
   DirectionMethod Method = DirectionMethod::PrincipalCurvature; ///< of the field
+  Index Parts = 0; ///< connected components
+  Index PartsWithoutCurvature = 0; ///< whose field is 0 with the methods that follow it
   Index Turned = 0; ///< triangles with another orientation than most, if that matters
   LineFieldReport Report;
 };

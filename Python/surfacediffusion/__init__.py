@@ -42,6 +42,7 @@
 `spectrum`            the variance of data between scales
 `refine`              shorter edges, for the large triangles of CAD files
 `relief`              values as relief, for printing
+`on_faces`            where arrays are if there are as many points as faces; `on_points` alike
 ===================== ============================================================================
 
 A function that finds one array returns it. `harmonic_map`, `denoise_mesh`, `mumford_shah`, `segment`,
@@ -75,15 +76,15 @@ from ._run import States, SurfaceDiffusionWarning
 from ._scales import *  # noqa: F403
 from ._shape import ReliefResult, relief
 from ._steps import *  # noqa: F403
-from ._surface import Surface, sphere
+from ._surface import Surface, on_faces, on_points, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
 
 __version__ = _version("surfacediffusion")
 
 __all__ = [
     "FWHMEstimate", "RefinedSurface", "ReliefResult", "States", "Surface", "SurfaceDiffusionWarning",
-    "estimate_fwhm", "estimate_fwhm_img", "get_number_of_threads", "refine", "relief",
-    "set_number_of_threads", "smooth_img", "smooth_to_fwhm", "sphere",
+    "estimate_fwhm", "estimate_fwhm_img", "get_number_of_threads", "on_faces", "on_points", "refine",
+    "relief", "set_number_of_threads", "smooth_img", "smooth_to_fwhm", "sphere",
 ]
 __all__ += _derivatives.__all__
 __all__ += _distance.__all__

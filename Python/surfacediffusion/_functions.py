@@ -30,6 +30,7 @@ from ._run import (
 from ._settings import settings_of, shorten, spell_documentation
 from ._surface import (
     Surface, SurfaceLike, as_data, as_numbers, as_outside, as_surface, find_on_faces, has_integers,
+    place,
 )
 
 __all__ = [
@@ -59,7 +60,8 @@ roi : array_like, shape (n,) or (m,), optional
     is ``mask=(roi == 0), mask_mode="Exclude"``, and is not given together with `mask`.""",
     "directions": """\
 directions : array_like, shape (n, 3) or (m, 3), optional
-    The direction e1 at each point or face, of any length and sign; zero or NaN is none.""",
+    The direction e1 at each point or face, of any length and sign; zero or NaN is none. Where there
+    are as many points as faces, :func:`on_faces` says which, and so does a result on faces.""",
     "left_out": """\
 mask : array_like, shape (n,) or (m,), optional
     Nonzero leaves a point with its faces, or a face, out: the surface ends there.
@@ -303,7 +305,8 @@ def heat(
     way. For a single result of a given `fwhm`, ``time_integrator="Exponential"`` with
     ``number_of_time_steps=1`` is the fastest and nearly the most accurate, as ``surfacediffusion smooth``
     takes: it solves 6 systems in place of 20, and is within 0.5 % (L2) of the exact result for white
-    noise at any width (1 % for data at faces). Values may leave the range of the data by 5e-4 of it.
+    noise at any width (1 % for data at faces). Values may leave the range of the data by 5e-4 of it, and
+    by more at obtuse angles of boundaries.
 
     More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
     in double precision does not grow with their number. This does not hold with `automatic_fidelity`,
@@ -620,9 +623,10 @@ def denoise_mesh(
     Chen, TVCG 28(12), 2022). A surface counts as CAD if the displacements are as white as independent
     noise after this. Otherwise it is organic, and the result before is kept: details were lost.
 
-    Connected components have levels, kinds and units of length of their own; those with less than 200
-    points share one level, relative to their mean edge lengths, and one kind. A surface whose estimated
-    noise is 0 stays as it is. Faces may be oriented at random, and the numbering of points and faces
+    Connected components have levels, kinds and units of length of their own. Noise that cannot be told
+    from the shape stays unless `noise_level` is given: that of components with less than 200 points, and
+    of those with more than a quarter of the edges within flat faces. A surface whose estimated noise is
+    0 stays as it is. Faces may be oriented at random, and the numbering of points and faces
     does not matter.
 
     Parameters
@@ -646,7 +650,8 @@ def denoise_mesh(
     -----
     SurfaceDiffusionWarning
         For triangles of zero area, for coincident points that may come apart, if no noise was found,
-        if it is correlated over several edges, and if points moved by more than 10 times its level.
+        if it is correlated over several edges or cannot be told from the shape, if the volume of a
+        closed component changes by more than 2 %, and if points moved by more than 10 times its level.
 
     Examples
     --------
@@ -1129,7 +1134,8 @@ def direction_field(
     ----------
     {surface}
     hints : array_like, shape (n, 3) or (m, 3), optional
-        Directions at points or faces for ``method="Hints"``; zero or NaN is no hint.
+        Directions at points or faces for ``method="Hints"``; zero or NaN is no hint. Where there are
+        as many points as faces, :func:`on_faces` says which.
     {progress}
 
     {settings}
@@ -1156,5 +1162,4 @@ def direction_field(
         raise ValueError(f'hints is given but method is {method}; allowed: method="Hints", or no hints')
     inputs = Input(surface, directions=hints, directions_name="hints")
     ((output,), _) = _run_once("direction_field", inputs, runner, progress)
-    field: NDArray[np.float64] = output.values
-    return field
+    return place(output.values, on_faces=True)

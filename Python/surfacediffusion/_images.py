@@ -37,7 +37,8 @@ def smooth_img(
         boundary, and outside the result is 0. For instance the cortex without the medial wall.
     number_of_time_steps : int, default 1
         As for :func:`heat` with the time integrator "Exponential", of which one step is within 0.5 % of
-        the exact result for white noise. Values may leave the range of the data by 5e-4 of it.
+        the exact result for white noise. Values may leave the range of the data by 5e-4 of it, and by
+        more at obtuse angles of boundaries.
     progress : bool or callable, optional
         As for :func:`heat`.
 

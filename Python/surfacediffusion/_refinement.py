@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._run import Progress, ProgressReporter, warn
 from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_numbers, as_outside, as_surface
+from ._surface import Surface, SurfaceLike, as_numbers, as_outside, as_surface, known_place, place
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -290,22 +290,22 @@ def take_along(
         if values is None or (beside and name in ("values", "fidelity")):
             continue
         array = ~as_outside(values, n, m) if name == "roi" else as_numbers(name, values)
-        on_faces = array.ndim > 0 and len(array) == m != n
+        known = known_place(values)
+        on_faces = array.ndim > 0 and len(array) == m and (n != m or bool(known))
         if name in _DATA and given.get("on_faces") is not None:
             on_faces = bool(given["on_faces"])
         if array.ndim not in (1, 2) or len(array) != (m if on_faces else n):
             raise ValueError(f"{name} has shape {array.shape}; allowed: one row per point, of which there "
                              f"are {n}, or per face, {m}")
         if on_faces:
-            carried[name] = fine.at_faces(array)
-        elif name == "roi":  # what is between a masked point and another one is masked
-            carried[name] = fine.at_points(array)
-        elif name == "mask":
-            carried[name] = interpolate_points(array, fine.parents, mask=True)
+            found = fine.at_faces(array)
+        elif name == "mask":  # what is between a masked point and another one is masked, as by roi
+            found = interpolate_points(array, fine.parents, mask=True)
         elif name == "fidelity":
-            carried[name] = interpolate_weights(array, fine.parents)
+            found = interpolate_weights(array, fine.parents)
         else:
-            carried[name] = fine.at_points(array)
+            found = fine.at_points(array)
+        carried[name] = place(found, on_faces)
         if name in _DATA and "on_faces" in given:
             carried["on_faces"] = on_faces
     return fine.surface, carried, fine

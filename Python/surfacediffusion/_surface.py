@@ -54,7 +54,31 @@ def place(array: Any, on_faces: bool) -> Placed:
     return placed
 
 
-def _known_place(values: Any) -> bool | None:
+def on_points(array: ArrayLike) -> NDArray[Any]:
+    """The same array, known to be on points.
+
+    Arrays are on points or faces by their number of rows. Where a surface has as many points as faces,
+    this and :func:`on_faces` say which, of directions, hints, masks, weights and speeds. What is
+    computed from the array has no known place.
+
+    Examples
+    --------
+    >>> from surfacediffusion import Surface, direction_field, on_faces
+    >>> tetrahedron = Surface([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    ...                       [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    >>> hints = [[1, 0, 0]] + 3 * [[0, 0, 0]]
+    >>> direction_field(tetrahedron, on_faces(hints), method="Hints").shape
+    (4, 3)
+    """
+    return place(array, False)
+
+
+def on_faces(array: ArrayLike) -> NDArray[Any]:
+    """The same array, known to be on faces: see :func:`on_points`."""
+    return place(array, True)
+
+
+def known_place(values: Any) -> bool | None:
     """Whether values are on faces, if that is known."""
     return values.on_faces if isinstance(values, Placed) else None
 
@@ -67,7 +91,7 @@ def find_place(name: str, values: Any, sizes: tuple[int, int], what: str, on_fac
     if shape not in ((n,), (m,)):
         raise ValueError(f"{name} has shape {shape}; allowed: ({n},), one {what} per point, or "
                          f"({m},), one per face")
-    known = _known_place(values)
+    known = known_place(values)
     return (on_faces if known is None else known) if n == m else shape[0] == m
 
 
@@ -76,13 +100,13 @@ def as_directions(
 ) -> tuple[NDArray[np.float64], bool]:
     """Directions on points or faces, and whether they are on faces: by their number unless known."""
     n, m = sizes
-    array, on_faces = as_numbers(name, values), _known_place(values)
+    array, on_faces = as_numbers(name, values), known_place(values)
     if array.shape not in ((n, 3), (m, 3)):
         raise ValueError(f"{name} has shape {array.shape}; allowed: ({n}, 3), one row per point, or "
                          f"({m}, 3), one row per face")
     if n == m and on_faces is None:
         raise ValueError(f"{name} has one row per point and per face, of which there are {n} each; "
-                         "allowed: surfaces where they differ")
+                         f"allowed: on_points({name}) or on_faces({name})")
     infinite = np.isinf(array).any(axis=1)
     if infinite.any():
         raise ValueError(f"{name} is infinite in row {int(np.argmax(infinite))}; allowed: finite values "
@@ -130,7 +154,7 @@ def as_outside(roi: Any, *sizes: int) -> NDArray[np.bool_]:
     if not ((array != 0) & ~np.isnan(array)).any():
         raise ValueError("roi is 0 everywhere; allowed: nonzero in the region of interest")
     outside: NDArray[np.bool_] = (array == 0) | np.isnan(array)
-    known = _known_place(roi)
+    known = known_place(roi)
     return outside if known is None else place(outside, known)
 
 
@@ -169,7 +193,7 @@ def find_on_faces(name: str, values: Any, surface: Surface, on_faces: bool | Non
     if array.ndim not in (1, 2) or array.shape[0] not in (n, m) or array.size == 0:
         raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},) or ({n}, k), one row per "
                          f"point, or ({m},) or ({m}, k), one row per face")
-    return bool(array.shape[0] != n)
+    return bool(array.shape[0] != n or (n == m and known_place(values)))
 
 
 def data_components(array: NDArray[Any]) -> int:

@@ -87,7 +87,7 @@ class Printing(unittest.TestCase):
         first = Path("out.stl").read_bytes()
         out = self.succeed(line)
         self.assertRegex(out, "out.stl: [0-9]+ triangles, pattern of 4 mm, relief of 0.4 mm, "
-                              "smallest wall [0-9.]+ mm, closed, ")
+                              "smallest wall [0-9.]+ mm, closed, manifold, ")
         self.assertEqual(Path("out.stl").read_bytes(), first)
 
     def test_all_formats_have_the_same_part(self):
@@ -106,6 +106,52 @@ class Printing(unittest.TestCase):
         self.assertEqual((shades.min(), shades.max()), (0, 1))
         words = [line.split() for line in Path("out.off").read_text().splitlines()[2:2 + len(points)]]
         np.testing.assert_allclose(np.array(words, dtype=float)[:, 3:6] / 255, shades, atol=1e-4)
+
+    def test_parts_far_from_the_origin_keep_their_relief_in_stl(self):
+        for place in (5e5, 5.2e6):
+            points, triangles = box()
+            export("far.ply", points + place, triangles)
+            out = self.succeed("texture far.ply 8mm far.stl --relief 0.4mm --steps 40",
+                               "far.stl: coordinates of up to .* have steps of .* in STL, so that the part is "
+                               "moved by -[0-9. -]*[(]PLY and OBJ keep its place[)]")
+            self.assertIn("closed, manifold", out)
+            self.succeed("texture far.ply 8mm there.ply --relief 0.4mm --steps 40")
+            found, expected = read_surface("far.stl"), read_surface("there.ply")
+            self.assertTrue(is_closed(found.faces))
+            corners, there = found.points[found.faces], expected.points[expected.faces]
+            shift = np.round((there - corners).mean(axis=(0, 1)))
+            np.testing.assert_allclose(corners, there - shift, atol=1e-5)
+
+    def test_repeated_triangles_count_once_and_shared_edges_are_not_manifold(self):
+        points, triangles = box()
+        export("twice.ply", points, np.vstack([triangles, triangles]))
+        out = self.succeed("texture twice.ply 8mm out.stl --relief 0.4mm --steps 40",
+                           "triangles have the same corners as others, and count once")
+        self.assertIn("closed, manifold", out)
+        two = np.vstack([points, points + [SIDE, SIDE, 0]])  # they share an edge
+        export("two.ply", two, np.vstack([triangles, triangles + len(points)]))
+        out = self.succeed("texture two.ply 8mm out.stl --relief 0.4mm --steps 40",
+                           "edges of more than two triangles, where there is no relief")
+        self.assertRegex(out, "closed, [0-9]+ edges of more than two triangles")
+
+    def test_refine_keeps_colours_and_says_what_it_drops(self):
+        points, triangles = box()
+        colors = np.arange(24, dtype=np.uint8).reshape(8, 3) * 10
+        export("box.ply", points, triangles, colors)
+        self.succeed("refine box.ply 3 fine.ply")
+        fine = read_surface("fine.ply")
+        found, others = fine.beside()
+        self.assertEqual(others, [])
+        np.testing.assert_array_equal(found[:8], colors)
+        self.assertTrue(((found >= colors.min(axis=0)) & (found <= colors.max(axis=0))).all())
+        self.succeed("refine box.ply 3 fine.stl",
+                     "fine.stl has none of the colours of box.ply; --data takes data at the vertices along")
+        Path("box.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 9 0 0\nv 0 9 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                                   "usemtl red\nf 1/1 2/2 3/3\n")
+        self.succeed("refine box.obj 3 fine.obj",
+                     "fine.obj has none of the texture coordinates, materials of box.obj; --data takes ")
+        Path("box.off").write_text("COFF\n3 1 0\n0 0 0 255 0 0 255\n9 0 0 0 255 0 255\n0 9 0 0 0 255 255\n3 0 1 2\n")
+        self.succeed("refine box.off 3 fine.off", "fine.off has none of the colours of box.off")
 
     def test_refine_shortens_edges_and_takes_data_along(self):
         points, triangles = box()

@@ -227,3 +227,30 @@ TEST(NoiseLevel, SteadyStateAtTheFoundFidelityLeavesTheNoise)
   EXPECT_NEAR(Discrepancy(mesh, data, u), sigma, 0.01 * sigma);
   EXPECT_LT(RootMeanSquare(mesh, u - clean), 0.5 * sigma); // and denoises
 }
+
+/// In a disk of slices, all vertices are near to each other through the middle.
+TEST(NoiseLevel, RingsHaveASizeInProportionAroundVerticesOfMany)
+{
+  const Index count = 2000;
+  Surface fan{ Points(count + 1, 3), Triangles(count, 3) };
+  for (Index i = 0; i < count; ++i)
+  {
+    const double angle = 2.0 * Pi * i / count;
+    fan.Vertices.row(i) << std::cos(angle), std::sin(angle), 0.0;
+    fan.Faces.row(i) << i, (i + 1) % count, count;
+  }
+  fan.Vertices.row(count).setZero();
+  const auto assembler = MakeAssembler(fan);
+  const SparsePattern pattern = assembler->Pattern();
+  Rings rings(pattern, { 0, count + 1 });
+  std::size_t all = 0;
+  std::size_t largest = 0;
+  for (Index i = 0; i <= count; ++i)
+  {
+    const std::size_t size = rings.FindDisk(i, 4).size();
+    all += size;
+    largest = std::max(largest, size);
+  }
+  EXPECT_LT(all, 500U * static_cast<std::size_t>(count));
+  EXPECT_EQ(largest, static_cast<std::size_t>(count) + 1); // of the middle
+}

@@ -200,7 +200,7 @@ TEST(VertexUpdating, TrianglesTurnAsTheirVectorsDo)
   const Surface s = Noisy(Icosphere(2), 0.05);
   const TriangleMesh mesh(s.Vertices, s.Faces);
   const Eigen::Matrix3d turn =
-    Eigen::AngleAxisd(0.02, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+    Eigen::AngleAxisd(0.002, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
   const Values normals = VertexNormals(mesh, s);
   VertexMotion motion;
   Surface moved = s;

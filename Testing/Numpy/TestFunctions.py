@@ -270,6 +270,41 @@ class Surfaces(unittest.TestCase):
             surface.points[0] = 0.0
 
 
+    def test_surfaces_with_as_many_points_as_faces_have_directions_at_known_places(self):
+        points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+        solid = sd.Surface(points, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+        field = sd.direction_field(solid, method="Smooth")
+        hints = np.asarray(field)
+        with self.assertRaisesRegex(ValueError, r"allowed: on_points\(hints\) or on_faces\(hints\)"):
+            sd.direction_field(solid, hints, method="Hints")
+        again = sd.direction_field(solid, field, method="Hints", hint_weight=1e6)
+        np.testing.assert_allclose(np.abs(np.sum(again * field, axis=1)), 1, atol=1e-3)
+        np.testing.assert_array_equal(
+            again, sd.direction_field(solid, sd.on_faces(hints), method="Hints", hint_weight=1e6))
+        at_points = sd.direction_field(solid, sd.on_points(hints), method="Hints", hint_weight=1e6)
+        self.assertGreater(np.abs(at_points - again).max(), 0.1)
+        values = [0.0, 1.0, 5.0, 2.0]
+        np.testing.assert_array_equal(
+            sd.tensor_diffusion(solid, values, directions=field, time_step=0.1),
+            sd.tensor_diffusion(solid, values, directions=sd.on_faces(hints), time_step=0.1))
+        np.testing.assert_array_equal(  # data, too
+            sd.heat(solid, sd.on_faces(values), time_step=0.1),
+            sd.heat(solid, values, on_faces=True, time_step=0.1))
+        fine = sd.tensor_diffusion(solid, values, directions=field, refine_to=0.4, time_step=0.1)
+        self.assertTrue(np.isfinite(fine).all())
+
+    def test_fields_that_are_zero_on_a_part_say_what_to_do(self):
+        square = sd.Surface([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+        for method in ("PrincipalCurvature", "CurvatureAligned"):
+            with self.assertWarnsRegex(
+                    sd.SurfaceDiffusionWarning, "the surface has no direction of curvature: flat, "
+                    "or of the size of smoothing_length .*set method to Smooth"):
+                self.assertFalse(sd.direction_field(square, method=method).any())
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertTrue(sd.direction_field(square, method="Smooth").any())
+
+
 class Edges(unittest.TestCase):
     def test_a_cap_has_one_closed_curve_of_its_length(self):
         for level in (5, 6):
@@ -555,6 +590,14 @@ class Results(unittest.TestCase):
         self.assertLess(np.mean(1 - after), 0.5 * np.mean(1 - before))
         self.assertGreater(result.mean_displacement, 0.0)
         self.assertLess(np.linalg.norm(result.points, axis=1).std(), 0.5 * noise.std())
+
+
+    def test_zero_steps_move_no_point_of_a_coarse_shape(self):
+        octahedron = sd.Surface(np.vstack([np.eye(3), -np.eye(3)]), [
+            [0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]])
+        result = sd.harmonic_map(octahedron, move_vertices=True, number_of_time_steps=0)
+        np.testing.assert_array_equal(result.points, octahedron.points)
+        self.assertEqual(result.maximum_displacement, 0)
 
 
 class Warnings(unittest.TestCase):

@@ -42,9 +42,10 @@ Row3 TargetNormal(
   }
   const Row3 oldMean = old.colwise().mean();
   const Row3 mean = now.colwise().mean();
-  const double oldSpread = (old.rowwise() - oldMean).norm();
-  const double spread = (now.rowwise() - mean).norm();
-  const double rest = !isKnown ? 0.0 : spread < oldSpread ? spread / oldSpread : 1.0;
+  const double spread = (old.rowwise() - oldMean).squaredNorm();
+  const double change = (now - old).squaredNorm();
+  const double kept = change > 0.0 ? std::max(0.0, 1.0 - change / spread) : 1.0;
+  const double rest = isKnown ? kept * kept : 0.0;
   const Row3 from = oldMean.stableNormalized();
   const Row3 to = mean.stableNormalized();
   // The smallest rotation that takes one mean to the other, of the rest

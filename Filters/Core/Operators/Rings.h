@@ -19,7 +19,9 @@ struct VertexRange
   Index Size() const { return this->End - this->Begin; }
 };
 
-/// The vertices near a vertex, by the number of edges between them. The pattern, of the stiffness
+/// The vertices near a vertex, by the number of edges between them. Through a vertex with more than
+/// 64 neighbours, such as the middle of a disc that is cut into slices, a vertex is near to only
+/// about 64 of them, so that the rings of all vertices have a size in proportion. The pattern, of the stiffness
 /// matrix, must outlive it; no edge leaves the range.
 class Rings
 {
@@ -44,7 +46,9 @@ public:
       for (; this->RingBegin < end; ++this->RingBegin)
       {
         const Index i = this->Disk[this->RingBegin];
-        for (Index slot = this->Outer[i]; slot < this->Outer[i + 1]; ++slot)
+        const Index stride =
+          i == centre ? 1 : 1 + (this->Outer[i + 1] - this->Outer[i] - 1) / LargestStar;
+        for (Index slot = this->Outer[i]; slot < this->Outer[i + 1]; slot += stride)
         {
           Index& seen = this->SeenIn[static_cast<std::size_t>(this->Inner[slot] - this->First)];
           if (seen != this->Search)
@@ -68,6 +72,8 @@ public:
   }
 
 private:
+  static constexpr Index LargestStar = 64;
+
   const Index* Outer;
   const Index* Inner;
   Index First;

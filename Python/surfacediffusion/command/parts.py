@@ -8,7 +8,7 @@ from .. import turing_texture
 from .._refinement import MAXIMUM_TRIANGLES
 from ..files import new_data, read_surface
 from ..files.content import check_output_folder
-from ..files.export import UNITS, export
+from ..files.export import UNITS, export, kind_of_export, places_in_file
 from . import common, inputs, values
 from .printing import MAXIMUM_TRIANGLES_OF_PARTS, PATTERNS, edge_of_triangles, in_coordinates
 from .printing import is_for_printing, print_texture, reaction_of_pattern
@@ -35,7 +35,7 @@ def add_refine(commands):
     parser = commands.add(
         "refine", refine,
         "Bisect the long edges of a surface, so that data and patterns have room on large triangles: "
-        "flat faces stay flat, sharp edges sharp, and data at the vertices go along.",
+        "flat faces stay flat, sharp edges sharp, and data and colours at the vertices go along.",
         ["part.ply 0.5 fine.ply --data load.npy fine.npy"], REFINE)
     common.mesh(parser)
     parser.add_argument("length", metavar="LENGTH", type=values.positive,
@@ -67,8 +67,16 @@ def refine(arguments, report):
                       maximum_number_of_triangles=arguments.maximum_triangles or MAXIMUM_TRIANGLES)
     report.facts.update(longest_edge=number(fine.longest_edge), vertices=fine.surface.n_points,
                         triangles=fine.surface.n_faces)
+    colors, lost = surface.beside()
+    if colors is not None and kind_of_export(arguments.output) not in ("obj", "off", "ply"):
+        colors, lost = None, ["colours", *lost]
+    if lost:
+        report.warn(f"{arguments.output} has none of the {', '.join(lost)} of {surface.path}; --data takes data "
+                    "at the vertices along")
     with report.timed("write"):
-        export(arguments.output, fine.surface.points, fine.surface.triangles)
+        points = places_in_file(arguments.output, fine.surface.points, report.warn)
+        export(arguments.output, points, fine.surface.triangles,
+               None if colors is None else fine.at_points(colors))
         for (_, new), given_values in zip(arguments.data, columns):
             write_array(new, fine.at_points(given_values))
     report.say_written(arguments.output, f"{fine.surface.n_faces} triangles, edges of at most "

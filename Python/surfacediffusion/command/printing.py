@@ -8,7 +8,7 @@ import numpy as np
 from .. import Surface, refine, relief, turing_texture
 from .._refinement import EDGES_PER_WAVELENGTH, FEWEST_EDGES_PER_WAVELENGTH
 from ..files.content import check_output_folder
-from ..files.export import UNITS, export, kind_of_export
+from ..files.export import UNITS, export, kind_of_export, places_in_file
 from .inputs import ArgumentProblem
 from .report import number
 
@@ -94,10 +94,26 @@ def print_texture(arguments, surface, report):
         if np.isfinite(result.smallest_wall):
             said.append(f"smallest wall {result.smallest_wall:.3g} {unit}")
         said.append("closed" if result.open_edges == 0 else f"{result.open_edges} open edges")
+        said.append("manifold" if result.non_manifold_edges == 0
+                    else f"{result.non_manifold_edges} edges of more than two triangles")
     shades = np.rint(255 * np.clip(texture.texture, 0, 1)).astype(np.uint8)
+    points = places_in_file(arguments.output, points, report.warn)
+    if kind == "stl":
+        _warn_of_rounding(arguments.output, points, triangles, report)
     with report.timed("write"):
         export(arguments.output, points, triangles, np.repeat(shades[:, None], 3, axis=1), unit)
     report.say_written(arguments.output, ", ".join(said))
+
+
+def _warn_of_rounding(path, points, triangles, report):
+    """Of triangles that collapse in single precision."""
+    _, before = np.unique(points, axis=0, return_inverse=True)
+    _, after = np.unique(points.astype(np.float32), axis=0, return_inverse=True)
+    collapsed = [np.any(np.roll(corners, 1, axis=1) == corners, axis=1).sum()
+                 for corners in (before.reshape(-1)[triangles], after.reshape(-1)[triangles])]
+    if collapsed[1] > collapsed[0]:
+        report.warn(f"{path}: {collapsed[1] - collapsed[0]} triangles have no area in the precision of STL; .ply and "
+                    ".obj have more digits")
 
 
 def edge_of_triangles(surface, count):

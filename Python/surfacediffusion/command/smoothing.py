@@ -128,7 +128,7 @@ def _areas_and_steps(parser):
                              "SURFACE: for a surface that is the average of many")
     common.steps(parser, "number of time steps (default 1, which is within 0.5 %% of the exact "
                          "result for white noise at any width, 1 %% for data at faces; values may "
-                         "leave their range by 5e-4 of it)")
+                         "leave their range by 5e-4 of it, and by more at obtuse angles of boundaries)")
 
 
 def _kernels_are_fwhm(parser, text):

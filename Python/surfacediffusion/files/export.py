@@ -16,6 +16,9 @@ from .content import FileError, check_range, write_atomically
 UNITS = {"um": (0.001, "micron"), "mm": (1.0, "millimeter"), "cm": (10.0, "centimeter"),
          "m": (1000.0, "meter"), "in": (25.4, "inch")}
 
+#: Of STL's coordinates, over the size of the part, from corner to corner; at the origin it is below 1e-7.
+LARGEST_STEP = 1e-5
+
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -35,6 +38,23 @@ def export(path, points, triangles, colors=None, unit="mm"):
     check_range(path, kind, [points], "coordinate")
     write_atomically(path, _WRITERS[kind](np.asarray(points, dtype=float),
                                           np.asarray(triangles), colors, unit))
+
+
+def places_in_file(path, points, say):
+    """The points as the format of the file can hold them. STL has single precision, which takes what is small
+    from parts that are far from the origin: they are moved there, and say() has a line about it."""
+    points = np.asarray(points, dtype=float)
+    if kind_of_export(path) != "stl":
+        return points
+    low, high = points.min(axis=0), points.max(axis=0)
+    step = float(np.spacing(np.float32(np.abs([low, high]).max())))
+    if step <= LARGEST_STEP * np.linalg.norm(high - low):
+        return points
+    unit = 10.0 ** np.floor(np.log10(np.linalg.norm(high - low)))
+    shift = unit * np.round(0.5 * (low + high) / unit)
+    say(f"{path}: coordinates of up to {np.abs([low, high]).max():.6g} have steps of {step:.2g} in STL, so that "
+        f"the part is moved by {' '.join(f'{-x:.10g}' for x in shift)} (PLY and OBJ keep its place)")
+    return points - shift
 
 
 def _stl(points, triangles, colors, unit):

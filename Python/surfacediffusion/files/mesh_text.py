@@ -145,6 +145,15 @@ def write_off(data: bytes, points, normals):
     return text.encode("latin-1"), "computed again" if off.has_normals else ""
 
 
+def beside_off(data: bytes):
+    """What there is beside coordinates, faces and normals."""
+    off = _Off(data)
+    prefix = _OFF.match(off.lines[0][1][0])
+    colored = any(len(words) > int(words[0]) + 1 for words in off.faces)
+    return (["colours"] * bool(prefix[2]) + ["texture coordinates"] * bool(prefix[1])
+            + ["colours of faces"] * colored)
+
+
 # ---- OBJ -----------------------------------------------------------------------------------------
 
 def _obj_lines(data):
@@ -210,6 +219,15 @@ def write_obj(data: bytes, points, normals):
         result.append(line)
     text = "".join(result).encode("latin-1")
     return text, "" if "vn" not in keys else "left out" if drop else "computed again"
+
+
+def beside_obj(data: bytes):
+    """What there is beside coordinates, faces and normals."""
+    words = [line.split("#", 1)[0].split() for _, line in _obj_lines(data)]
+    keys = {row[0] for row in words if row}
+    return (["colours"] * any(row[0] == "v" and len(row) > 6 for row in words if row)
+            + ["texture coordinates"] * ("vt" in keys) + ["materials"] * ("usemtl" in keys)
+            + ["groups"] * bool(keys & {"g", "o"}) + ["lines"] * ("l" in keys))
 
 
 def _has_other_normals(face):

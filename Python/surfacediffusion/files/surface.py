@@ -55,6 +55,12 @@ class SurfaceFile:
         found = [shape for word, shape in _SHAPES.items() if word in words[1:]]
         return found[0] if found else ""
 
+    @property
+    def beside(self):
+        """The colours of the vertices (n, 3) of uint8, or None, and the names of what else the file has
+        beside points, faces and normals."""
+        return _BESIDE.get(self.kind, lambda image: (None, []))(self.image)
+
     def save(self, path, points):
         """Write the surface with other points (n, 3) in the same format. The normals in the file do
         not belong to these: returns "computed again" or "left out", or "" if it has none."""
@@ -241,6 +247,38 @@ def _write_vtk(surface, points):
     found = [values for arrays in normals.values() for values in arrays.values()]
     return data, "" if not found else "left out" if found[-1] is None else "computed again"
 
+
+# ---- what files have beside the surface ----------------------------------------------------------
+
+def _beside_ply(mesh):
+    names = [name for name in mesh.vertices if name not in ("x", "y", "z", "nx", "ny", "nz")]
+    color = [name for name in ("red", "green", "blue") if mesh.vertices.get(name, np.empty(0)).dtype == np.uint8]
+    colors = np.column_stack([mesh.vertices[name] for name in color]) if len(color) == 3 else None
+    names = [name for name in names if colors is None or name not in color]
+    for element in mesh.elements:
+        if element.name in ("face", "tristrips"):
+            names += [f"{p.name} of faces" for p in element.properties
+                      if p.name not in ("vertex_indices", "vertex_index")]
+        elif element.name != "vertex":
+            names.append(element.name)
+    return colors, names
+
+
+def _beside_gifti(image):
+    intents = [code_name(array.intent) for array in image.darrays]
+    return None, [name for name in intents if name not in ("pointset", "triangle", "vector")]
+
+
+def _beside_vtk(mesh):
+    return None, [data.GetArrayName(i) or "an array" for data in (mesh.GetPointData(), mesh.GetCellData())
+                  for i in range(data.GetNumberOfArrays()) if data.GetArray(i) != data.GetNormals()]
+
+
+_BESIDE = {
+    "gifti": _beside_gifti, "ply": _beside_ply, "vtk": _beside_vtk, "vtp": _beside_vtk,
+    "off": lambda data: (None, mesh_text.beside_off(data)),
+    "obj": lambda data: (None, mesh_text.beside_obj(data)),
+}
 
 #: The reader and the writer of each kind of file.
 _FORMATS = {
