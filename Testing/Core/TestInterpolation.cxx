@@ -294,6 +294,40 @@ TEST(Interpolation, WithoutAnyValueIsAnError)
     std::runtime_error);
 }
 
+TEST(Interpolation, RefusesMatricesThatDoNotFitIntoMemory)
+{
+  constexpr Index count = 20000;
+  Surface fan; // around a point
+  Surface book; // around an edge
+  fan.Vertices = Points::Zero(count + 1, 3);
+  fan.Faces.resize(count, 3);
+  book.Vertices = Points::Zero(count + 2, 3);
+  book.Vertices(count + 1, 2) = 1.0;
+  book.Faces.resize(count, 3);
+  for (Index i = 0; i < count; ++i)
+  {
+    const double angle = 2.0 * Pi * i / count;
+    fan.Vertices.row(i) << std::cos(angle), std::sin(angle), 0.0;
+    book.Vertices.row(i) << std::cos(angle), std::sin(angle), 0.5;
+    fan.Faces.row(i) << i, (i + 1) % count, count;
+    book.Faces.row(i) << i, count, count + 1;
+  }
+  const auto refuses = [](const Surface& s, RimCondition rim)
+  {
+    const auto assembler = MakeAssembler(s);
+    const Values field = Sample(assembler->Mesh(), s, SeaTemperature);
+    Interpolation::Settings settings;
+    settings.Rim = rim;
+    EXPECT_THROW(
+      Interpolate(assembler,
+        ValuesAt(assembler->Mesh(), field, [](Index i) { return i % 10 == 0; }), settings),
+      std::runtime_error);
+  };
+  refuses(fan, RimCondition::Natural);
+  refuses(book, RimCondition::Natural);
+  refuses(book, RimCondition::Free);
+}
+
 TEST(Interpolation, RefusesSmoothingAndNoiseThatAreNotPositive)
 {
   const auto assembler = MakeAssembler(Icosphere(1));

@@ -30,12 +30,13 @@ PivotCounts SmoothFit::Prepare(
   this->Held = held;
   this->IsExact = exact;
   this->Weights = this->Data.Weights;
-  const Vector diagonal = this->Energy.Matrix().diagonal();
   if (exact)
   {
-    // A penalty as stiff as the energy's own rows: the multipliers converge within a few solves, and
+    // A penalty as stiff as the energy's own rows: the multipliers are known within a few solves, and
     // H stays as well conditioned as the energy.
     constexpr double stiffness = 1e3;
+    constexpr double least = 1e-6; // in triangles alone, in which no function has an energy
+    const Vector diagonal = this->Energy.Matrix().diagonal().cwiseMax(least * this->Energy.Sizes());
     for (Index i = 0; i < this->Data.Count(); ++i)
     {
       const SurfacePoint& place = this->Data.Places[i];
@@ -177,12 +178,93 @@ Values SmoothFit::InverseAtPoints(const Values& v) const
   return this->AtPoints(x);
 }
 
+double SmoothFit::LogDeterminant() const
+{
+  const Supernodes& nodes = this->Factor.Structure();
+  double sum = 0.0;
+  for (Index s = 0; s < nodes.Count(); ++s)
+  {
+    for (Index p = 0; p < nodes.Pivots(s); ++p)
+    {
+      sum += 2.0 * std::log(this->Factor.Pivot(s, p));
+    }
+  }
+  return sum;
+}
+
 Values SmoothFit::Solve(const Values& given, Values& u)
+{
+  constexpr int most = 4;
+  constexpr double resolved = 1e-14; // of the values
+  Values forces = Values::Zero(this->Data.Count(), u.cols());
+  this->Refine(given, forces, u);
+  for (Eigen::Index c = 0; c < u.cols() && this->IsExact; ++c)
+  {
+    const Values values = given.col(c);
+    Values column = u.col(c);
+    Values own = forces.col(c);
+    Vector misfit = values - this->AtPoints(column);
+    double last = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < most; ++round)
+    {
+      const double size = misfit.cwiseAbs().maxCoeff();
+      if (!(size < 0.5 * last) || size <= resolved * values.cwiseAbs().maxCoeff())
+      {
+        break;
+      }
+      last = size;
+      own += this->FindForces(misfit);
+      this->Refine(values, own, column);
+      misfit = values - this->AtPoints(column);
+    }
+    u.col(c) = column;
+    forces.col(c) = own;
+  }
+  return forces;
+}
+
+/// The multipliers f that take a misfit r away, B H^-1 B^T f = r, by conjugate residuals (E. Stiefel,
+/// Comment. Math. Helv. 29, 1955) with unknowns that are scaled by the roots of the weights. Nearly all
+/// eigenvalues are near 1 then, and a few are small where values are near to each other. The residual
+/// becomes the least if values contradict each other.
+Vector SmoothFit::FindForces(const Vector& misfit) const
+{
+  constexpr int most = 200;
+  constexpr double resolved = 1e-14;
+  constexpr double smallest = 1e-12; // eigenvalue, below which values contradict each other
+  const Vector roots = this->Weights.cwiseSqrt();
+  Vector r = roots.cwiseProduct(misfit);
+  Vector forces = Vector::Zero(r.size());
+  Vector direction = forces;
+  Vector image = forces;
+  const double enough = resolved * r.norm();
+  double last = 0.0;
+  for (int iteration = 0; iteration < most && r.norm() > enough; ++iteration)
+  {
+    const Vector imageOfResidual =
+      roots.cwiseProduct(this->InverseAtPoints(roots.cwiseProduct(r)).col(0));
+    const double product = r.dot(imageOfResidual);
+    if (!(product > smallest * r.squaredNorm()))
+    {
+      break;
+    }
+    const double share = iteration > 0 ? product / last : 0.0;
+    last = product;
+    direction = r + share * direction;
+    image = imageOfResidual + share * image;
+    const double length = product / image.squaredNorm();
+    forces += length * direction;
+    r -= length * image;
+  }
+  return roots.cwiseProduct(forces);
+}
+
+/// Let u have the derivative zero for these multipliers.
+void SmoothFit::Refine(const Values& given, const Values& forces, Values& u)
 {
   constexpr int most = 30;
   constexpr double resolved = 1e-14; // of the values
   Values step;
-  Values forces = Values::Zero(this->Data.Count(), u.cols()); // multipliers of exact values
   std::vector<double> last(static_cast<std::size_t>(u.cols()), 0.0);
   std::vector<char> isDone(last.size(), 0);
   for (int iteration = 0; iteration < most; ++iteration)
@@ -212,10 +294,6 @@ Values SmoothFit::Solve(const Values& given, Values& u)
     {
       break;
     }
-    if (this->IsExact)
-    {
-      forces += this->Weights.asDiagonal() * (given - this->AtPoints(u));
-    }
   }
   this->LastStep = 0.0;
   for (Eigen::Index c = 0; c < u.cols(); ++c)
@@ -224,7 +302,6 @@ Values SmoothFit::Solve(const Values& given, Values& u)
       std::max(u.col(c).cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
     this->LastStep = std::max(this->LastStep, last[static_cast<std::size_t>(c)] / size);
   }
-  return forces;
 }
 
 } // namespace SurfaceDiffusion

@@ -62,6 +62,10 @@ public:
     return this->Factor.InverseDiagonal(this->Parallel, progress);
   }
 
+  /// log(det(H)), of the mu of Prepare(), and the rows of H.
+  double LogDeterminant() const;
+  Index NumberOfRows() const { return static_cast<Index>(this->H.rows()); }
+
   /// mu Q u - B^T W (d - B u) - B^T forces: the derivative of the energy.
   void Derivative(
     const Values& given, const Values& u, const Values& forces, Values& derivative) const;
@@ -70,6 +74,8 @@ public:
 
 private:
   void ReleaseHeld(Values& x) const;
+  void Refine(const Values& given, const Values& forces, Values& u);
+  Vector FindForces(const Vector& misfit) const;
 
   const SmoothnessEnergy& Energy;
   const ScatteredValues& Data;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -21,6 +22,47 @@ namespace SurfaceDiffusion
 
 namespace
 {
+
+/// Throws std::runtime_error if points or edges with many triangles let the energy, a square of sparse
+/// matrices, have more entries than there should be memory for.
+void RequireSparse(const TriangleMesh& mesh, RimCondition rim)
+{
+  constexpr double most = 3e7; // and 400 per vertex; an even mesh has 49
+  constexpr double bytes = 32.0; // of an entry, with those of the system and its factor
+  double entries = 0.0;
+  Index largest = 0;
+  std::vector<Index> uses(static_cast<std::size_t>(mesh.NumberOfVertices()), 0);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    const Index begin = mesh.VertexCornersBegin()[i];
+    const Index end = mesh.VertexCornersBegin()[i + 1];
+    Index count = end - begin; // of the triangles whose unknowns have a common equation
+    if (rim == RimCondition::Free) // those of an edge
+    {
+      count = 0;
+      for (Index c = begin; c < end; ++c)
+      {
+        count = std::max(count, ++uses[mesh.OtherCorner(mesh.VertexCorners()[c], 1)]);
+        count = std::max(count, ++uses[mesh.OtherCorner(mesh.VertexCorners()[c], 2)]);
+      }
+      for (Index c = begin; c < end; ++c)
+      {
+        uses[mesh.OtherCorner(mesh.VertexCorners()[c], 1)] = 0;
+        uses[mesh.OtherCorner(mesh.VertexCorners()[c], 2)] = 0;
+      }
+    }
+    entries += (count + 1.0) * (count + 1.0);
+    largest = std::max(largest, count);
+  }
+  if (entries > most + 400.0 * mesh.NumberOfVertices())
+  {
+    std::ostringstream text;
+    text << (rim == RimCondition::Free ? "an edge" : "a point") << " of the surface has " << largest
+         << " triangles, which would take " << bytes * entries / 1e9
+         << " GB of memory; allowed: about 5000 (remesh the surface there)";
+    throw std::runtime_error(text.str());
+  }
+}
 
 /// The values of each component, with its own numbers of vertices.
 std::vector<ScatteredValues> ByComponent(const TriangleMesh& mesh, const ScatteredValues& all)
@@ -216,6 +258,7 @@ SmoothInterpolation::Result SmoothInterpolation::FitPart(const ScatteredValues& 
 {
   const Index n = this->Assembly->Mesh().NumberOfVertices();
   const Eigen::Index columns = rows.Given.cols();
+  RequireSparse(this->Assembly->Mesh(), this->Options.Rim);
   Work work(*this->Assembly, this->Coefficients, this->Options, rows, this->Parallel);
   work.Lowest = lowest;
   work.Highest = highest;

@@ -69,6 +69,12 @@ void SmoothnessEnergy::DropNegativeCurvature()
   this->Q += this->Tension * this->K;
 }
 
+Vector SmoothnessEnergy::Sizes() const
+{
+  const Vector diagonal = this->K.diagonal();
+  return diagonal.cwiseAbs2().cwiseQuotient(this->Mesh.ControlAreas());
+}
+
 void SmoothnessEnergy::AddTension(double tension)
 {
   this->Tension += tension;

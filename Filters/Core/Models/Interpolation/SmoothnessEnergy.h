@@ -37,6 +37,9 @@ public:
   /// Of Free: leave negative curvature out, without which no function has a negative energy.
   void DropNegativeCurvature();
 
+  /// The size that entries of the diagonal of Q have where functions can bend, K_ii^2 / A_i.
+  Vector Sizes() const;
+
   /// Add tension int |grad u|^2 to u^T Q u, in 1/length^2.
   void AddTension(double tension);
 
