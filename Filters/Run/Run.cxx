@@ -231,6 +231,7 @@ void Run::MakeModel(
     block.Cells->Start = model->State();
     if (block.HoldsDetail)
     {
+      ScaleFactors(block.Result.FidelityFactors, *block.Cells);
       model = AddCellDetail(std::move(model), *block.Surface, fields, *block.Cells,
         block.Units.CoreValueRange(), block.Solvers, this->Parallel);
     }

@@ -54,7 +54,7 @@ SettingRange RangeOf(const Kinetics::Parameter& parameter)
 void TextureSettings::Visit(SettingVisitor& visitor)
 {
   this->TimeSettings::Visit(visitor);
-  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false, false });
+  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false, false, false });
   static const std::string kinetics = DescribeKinetics();
   visitor.Choice({ "Kinetics", "", kinetics.c_str() }, this->Kinetics, WordsOfKinetics());
   visitor.Number({ "ReactionRate", "1/time",
