@@ -28,7 +28,8 @@
  * the cotan weights, and of (13). Without fidelity, fixed or held values, the sum of A_i u_i is
  * conserved to a relative error of 1e-12.
  *
- * TimeIntegrator SecondOrder (the default) is SDIRK2 with gamma = 1 - 1/sqrt(2) (R. Alexander, SIAM
+ * TimeIntegrator Automatic (the default) is Exponential with FWHM, and SecondOrder otherwise.
+ * SecondOrder is SDIRK2 with gamma = 1 - 1/sqrt(2) (R. Alexander, SIAM
  * J. Numer. Anal. 14, 1977). It is L-stable and solves two systems with one matrix per step. For an
  * error of 1e-3 it takes 3 to 4 steps; FirstOrder, backward Euler as in (8) and (14), takes about
  * 100. Backward Euler keeps the bounds of the data on Delaunay meshes at any time step, SDIRK2 only
@@ -117,9 +118,11 @@ public:
 
   /**
    * The lambda of the last update, in the unit of FidelityWeight: FidelityWeight, or the value that
-   * AutomaticFidelity found. AutomaticFidelity finds one value for each block of composite data,
-   * since each may have noise of its own. This is then the value of the first block, and each block
-   * has its own as field array `EffectiveFidelityWeight`, with ResultArrayName as prefix.
+   * AutomaticFidelity found. AutomaticFidelity finds one for each component and each
+   * connected component of the surface, since each may have noise of its own: this is that of the
+   * first component and the largest connected component. In composite data it is the value of the
+   * first block, and each block has its own as field array `EffectiveFidelityWeight`, with
+   * ResultArrayName as prefix.
    */
   SURFACEDIFFUSION_NUMBER(EffectiveFidelityWeight, double);
 
@@ -149,14 +152,17 @@ public:
 
   ///@{
   /**
-   * The time integrator, see the class comment. FirstOrder is the paper's; SecondOrder (default)
-   * does not keep the bounds of the data at large time steps, nor does Exponential, which is the
-   * most accurate one for few steps. Implicit is an error.
+   * The time integrator, see the class comment. FirstOrder is the paper's; SecondOrder does not
+   * keep the bounds of the data at large time steps, nor does Exponential, which is the most
+   * accurate one for few steps. Automatic (default): Exponential with FWHM, SecondOrder otherwise.
+   * Fewer than 4 steps of another one than Exponential to a FWHM are a warning. Implicit is an
+   * error.
    */
   SURFACEDIFFUSION_CHOICE(TimeIntegrator);
   void SetTimeIntegratorToFirstOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_FIRST_ORDER); }
   void SetTimeIntegratorToSecondOrder() { this->SetTimeIntegrator(TIME_INTEGRATOR_SECOND_ORDER); }
   void SetTimeIntegratorToExponential() { this->SetTimeIntegrator(TIME_INTEGRATOR_EXPONENTIAL); }
+  void SetTimeIntegratorToAutomatic() { this->SetTimeIntegrator(TIME_INTEGRATOR_AUTOMATIC); }
   ///@}
 
   /**

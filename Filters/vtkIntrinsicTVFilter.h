@@ -243,9 +243,11 @@ public:
 
   /**
    * The lambda of the last update, in the unit of FidelityWeight: FidelityWeight, or the value that
-   * AutomaticFidelity found. AutomaticFidelity finds one value for each block of composite data,
-   * since each may have noise of its own. This is then the value of the first block, and each block
-   * has its own as field array `EffectiveFidelityWeight`, with ResultArrayName as prefix.
+   * AutomaticFidelity found. AutomaticFidelity finds one for each component, unless ChannelCoupling is Joint, and each
+   * connected component of the surface, since each may have noise of its own: this is that of the
+   * first component and the largest connected component. In composite data it is the value of the
+   * first block, and each block has its own as field array `EffectiveFidelityWeight`, with
+   * ResultArrayName as prefix.
    */
   SURFACEDIFFUSION_NUMBER(EffectiveFidelityWeight, double);
 

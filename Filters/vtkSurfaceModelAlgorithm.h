@@ -123,6 +123,10 @@ public:
    * of positive area, and values are in R, the largest over the components of max - min of the
    * known values (1 if that is 0), so that one setting suits any mesh and any array. Classes
    * with time document its unit; see also vtkSurfaceDiffusionAlgorithm::GetTimeUnit().
+   *
+   * Edges longer than 30 times the median edge do not count in h, and values on at most 1 % of the
+   * area do not count in R where the range of the others is at most a tenth of the whole one, but
+   * not 0: spikes and outliers are no units. Either is one warning.
    */
   SURFACEDIFFUSION_CHOICE(Units);
   void SetUnitsToNatural() { this->SetUnits(UNITS_NATURAL); }

@@ -111,7 +111,8 @@ public:
   /**
    * On (default): the means c_k are found. The start are clusters of the values: of one component
    * those with the least sum of squares, otherwise those of k-means++ with RandomSeed. Then the
-   * means of the regions and the regions are computed in turn. Regions are numbered by ascending
+   * means of the regions and the regions are computed in turn. Under strong noise, of which they
+   * would be clusters, they are clusters of averages over neighbours, and stay. Regions are numbered by ascending
    * mean (by its first component, then the next ones), unless there are seeds, whose labels they
    * then have. If there are fewer different values than regions, the others are not used, with a
    * warning, and their means are NaN. Off: the means are those of SetMean(), or the clusters of the

@@ -5,6 +5,7 @@
 #include "Conversion/NewArray.h"
 #include "Conversion/ResultWriter.h"
 #include "Conversion/SurfaceReader.h"
+#include "Core/Surface/EdgeLengths.h"
 #include "Core/Surface/EdgeRefinement.h"
 
 #include "vtkCellArray.h"
@@ -141,12 +142,14 @@ PieceRefinement::EdgeSum PieceRefinement::SumEdges(const std::vector<SurfacePiec
       }
       std::sort(edges.begin(), edges.end());
       edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-      piece.SumOfEdges = 0.0;
-      piece.NumberOfEdges = static_cast<double>(edges.size());
+      std::vector<double> lengths;
       for (const auto& [a, b] : edges)
       {
-        piece.SumOfEdges += (arrays.Points.row(a) - arrays.Points.row(b)).norm();
+        lengths.push_back((arrays.Points.row(a) - arrays.Points.row(b)).norm());
       }
+      const EdgeLengths counted = MeasureEdgeLengths(lengths);
+      piece.SumOfEdges = counted.Sum;
+      piece.NumberOfEdges = counted.Number;
     }
     sum.Length += piece.SumOfEdges;
     sum.Number += piece.NumberOfEdges;

@@ -177,7 +177,7 @@ DomainDecomposition::EdgeMap DomainDecomposition::FindCandidateEdges(
       const Index j = corners(t, (a + 2) % 3);
       if (isOnInterface[i] && isOnInterface[j])
       {
-        edges[std::minmax(labelOf(i), labelOf(j))] = { { i, j }, mesh.Shapes()[t].EdgeLength(a) };
+        edges[std::minmax(labelOf(i), labelOf(j))] = { i, j };
       }
     }
   }
@@ -206,16 +206,14 @@ void DomainDecomposition::FindInterfaceEdges(
       }
     }
   }
-  for (const auto& [key, edge] : edges)
+  for (const auto& [key, ofEdge] : edges)
   {
     if (holders[key].size() > 1)
     {
       const auto number = static_cast<Index>(this->EdgesOnInterface.size());
       const bool isOwned = this->Edges.Add(number, holders[key]);
-      this->EdgesOnInterface.push_back(edge.Vertices);
+      this->EdgesOnInterface.push_back(ofEdge);
       this->OwnedEdges.push_back(isOwned);
-      this->ForeignEdges += isOwned ? 0 : 1;
-      this->ForeignEdgeLength += isOwned ? 0.0 : edge.Length;
     }
   }
 }

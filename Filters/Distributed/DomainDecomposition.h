@@ -51,18 +51,9 @@ public:
 
   const Processes& GetProcesses() const { return this->Group; }
 
-  /// Number and total length of the interface edges that another process owns.
-  Index SharedEdges() const { return this->ForeignEdges; }
-  double SharedEdgeLength() const { return this->ForeignEdgeLength; }
-
 private:
-  /// An edge between vertices on interfaces.
-  struct Edge
-  {
-    std::array<Index, 2> Vertices;
-    double Length;
-  };
-  using EdgeMap = std::map<std::pair<vtkIdType, vtkIdType>, Edge>; ///< by the labels of its ends
+  /// Edges between vertices on interfaces, by the labels of their ends.
+  using EdgeMap = std::map<std::pair<vtkIdType, vtkIdType>, std::array<Index, 2>>;
 
   void FindInterfaceVertices(const TriangleMesh& mesh, const PointIdentity& identity);
   void MergeComponents(const TriangleMesh& mesh, const PointIdentity& identity);
@@ -80,8 +71,6 @@ private:
   InterfaceExchange Edges; ///< of InterfaceEdges()
   std::map<int, std::vector<vtkIdType>> Originals, Copies; ///< points, by the other process
   vtkIdType CopyCount = 0;
-  Index ForeignEdges = 0;
-  double ForeignEdgeLength = 0.0;
   std::shared_ptr<const bool> AbortAsked;
 };
 

@@ -31,8 +31,6 @@ public:
 
   double FindLengthUnit() override;
   void Attach(Surface& surface, SolverStore& solvers) override;
-  double NumberOfSharedEdges() const override { return this->Domain->SharedEdges(); }
-  double SharedEdgeLength() const override { return this->Domain->SharedEdgeLength(); }
   Index NumberOfCopies() const override
   {
     return static_cast<Index>(this->Domain->NumberOfCopies());

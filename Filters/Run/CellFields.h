@@ -67,6 +67,9 @@ struct CellState
 PointData MakePointDataOfCells(
   const Surface& surface, const Fields& fields, CellState& cells, const Reduction& processes);
 
+/// Multiply cells.Factors by those of the vertices of each cell; no entry: 1.
+void ScaleFactors(const Vector& ofVertices, CellState& cells);
+
 /// Put the detail of the cells beside a model of their data, whose state is cells.Start. Returns a
 /// model that does not diffuse as it is.
 std::unique_ptr<Model> AddCellDetail(std::unique_ptr<Model> model, const Surface& surface,

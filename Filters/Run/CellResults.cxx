@@ -60,6 +60,17 @@ Values FirstDetail(const Fields& fields, const CellState& cells)
 
 } // namespace
 
+void ScaleFactors(const Vector& ofVertices, CellState& cells)
+{
+  for (Index c = 0; c < static_cast<Index>(cells.Factors.size()) && ofVertices.size() > 0; ++c)
+  {
+    if (cells.Transfer.Participates(c))
+    {
+      cells.Factors[c] *= cells.Transfer.MeanOver(c, [&](Index i) { return ofVertices[i]; });
+    }
+  }
+}
+
 std::unique_ptr<Model> AddCellDetail(std::unique_ptr<Model> model, const Surface& surface,
   const Fields& fields, CellState& cells, double valueRange, SolverStore& solvers,
   const ParallelFor& parallel)

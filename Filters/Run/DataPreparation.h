@@ -4,13 +4,8 @@
 
 #include "Run/ModelInputs.h"
 
-#include <functional>
-#include <memory>
-
 namespace SurfaceDiffusion
 {
-
-class HeatBlur;
 
 /// The traits that models of given data share.
 void DescribeData(const DataSettings& settings, ModelTraits& traits);
@@ -29,8 +24,7 @@ void CompletePreparation(const DataSettings& settings, ModelInputs& inputs, RunR
 CornerWeights MakeWeights(const DataSettings& settings, const ModelInputs& inputs);
 
 /// White noise of cells is correlated between the vertices of a cell, so that EstimateNoise()
-/// between neighbours is too low at vertices. This factor, found from a sample, mends that. 0 if it
-/// is not known.
+/// between neighbours is too low at vertices. This factor mends that. 0 if it is not known.
 double FindCellNoiseGain(const ModelInputs& inputs);
 
 /// The standard deviation at measured vertices over that of white noise of the data.
@@ -42,15 +36,5 @@ double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel);
 /// The mean fidelity factor of the known vertices, by area; 1 without factors. An automatic weight
 /// is divided by it, so that factors such as 1/s^2 may have any unit.
 double MeanFidelityFactor(const TriangleMesh& mesh, const PointData& data);
-
-/// The fidelity weight, in units of the numerics, at which the state after `steps` steps differs
-/// from the data by the noise (discrepancy principle). noiseLevel: in array units; 0: estimated.
-/// makeModel: the model of a fidelity weight. Warns in `result` if the noise is correlated, if the
-/// data are smooth between neighbours (see NeighbourVariation; not for data on cells), and if no
-/// weight leaves the noise. blur: applied to the state before it is compared with the data; may
-/// be null.
-double FindFidelity(const ModelInputs& inputs, double noiseLevel, double start, int steps,
-  const std::function<std::unique_ptr<Model>(double)>& makeModel, RunResult& result,
-  HeatBlur* blur = nullptr);
 
 } // namespace SurfaceDiffusion

@@ -65,6 +65,7 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
     }
     warnings.push_back({ text, this->SurfaceVersion });
   }
+  this->AppendLongEdges(warnings);
   if (this->Found.CorrelationLength > 0.0)
   {
     Sentence text;

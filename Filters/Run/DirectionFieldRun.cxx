@@ -198,6 +198,7 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
     warnings.push_back({ text, inputs });
   }
   std::ostringstream text;
+  this->AppendLongEdges(warnings);
   this->AppendMissedResidual(this->Report.MissedResidual, warnings);
   this->AppendTurnedTriangles(this->Turned, warnings);
   if (this->Report.UnsettledChange > 0.0)

@@ -40,6 +40,29 @@ std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields
   return seeds;
 }
 
+/// The area of the surface that each row of the data stands for; 0 of rows that take no part.
+std::vector<double> FindAreas(const Surface& surface, const Fields& fields)
+{
+  const TriangleMesh& mesh = surface.InputMesh();
+  std::vector<double> areas(static_cast<std::size_t>(fields.Data.Values.rows()), 0.0);
+  if (fields.Data.OnCells)
+  {
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
+      const Index cell = fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))];
+      areas[static_cast<std::size_t>(cell)] += mesh.Shapes()[t].Area();
+    }
+    return areas;
+  }
+  for (std::size_t i = 0; i < areas.size(); ++i)
+  {
+    const Index v = surface.VertexOf(static_cast<Index>(i));
+    areas[i] = v >= 0 ? mesh.ControlAreas()[v] : 0.0;
+  }
+  return areas;
+}
+
 /// Per vertex, whether all of its points are in between; no entries if no point can be.
 Flags FindVerticesBetween(const Surface& surface, const Fields& fields)
 {
@@ -125,7 +148,7 @@ void ValueStatistics::Widen(
   bounds[component].Widen(other);
 }
 
-void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inpaint, bool robust)
+void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inpaint)
 {
   const Values& values = fields.Data.Values;
   const std::vector<char> participates = FindParticipatingRows(surface, fields);
@@ -143,7 +166,8 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
       known.push_back(static_cast<Index>(i));
     }
   }
-  std::vector<double> column;
+  const std::vector<double> areas = FindAreas(surface, fields);
+  std::vector<AreaOfValue> column;
   for (Eigen::Index k = 0; k < values.cols(); ++k)
   {
     ValueBounds bounds;
@@ -151,13 +175,10 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
     for (const Index i : known)
     {
       bounds.Widen({ values(i, k), values(i, k) });
-      if (robust)
-      {
-        column.push_back(values(i, k));
-      }
+      column.push_back({ values(i, k), areas[static_cast<std::size_t>(i)] });
     }
     Widen(this->All, static_cast<std::size_t>(k), bounds);
-    Widen(this->Robust, static_cast<std::size_t>(k), RobustBounds(column));
+    Widen(this->Robust, static_cast<std::size_t>(k), BoundsOfMost(column));
   }
 }
 
@@ -201,12 +222,25 @@ void ValueStatistics::Merge(const Reduction& processes)
 
 double ValueStatistics::Range() const
 {
+  constexpr double shareOfOutliers = 0.1;
+  double range = 0.0;
+  for (std::size_t k = 0; k < this->All.size(); ++k)
+  {
+    const double all = this->All[k].Width();
+    const double robust = this->Robust[k].Width();
+    range = std::max(range, robust <= shareOfOutliers * all ? robust : all);
+  }
+  return range > 0.0 ? range : 1.0;
+}
+
+double ValueStatistics::WholeRange() const
+{
   double range = 0.0;
   for (const ValueBounds& bounds : this->All)
   {
     range = std::max(range, bounds.Width());
   }
-  return range > 0.0 ? range : 1.0;
+  return range;
 }
 
 double ValueStatistics::RobustRange() const

@@ -90,14 +90,16 @@ class ValueStatistics
 public:
   /// Count the finite values at points or cells of participating triangles; those that are missing
   /// count for Magnitude() alone. inpaint: whether a mask means missing.
-  /// robust: whether RobustRange() is wanted, which takes longer.
-  void Add(const Surface& surface, const Fields& fields, bool inpaint, bool robust);
+  void Add(const Surface& surface, const Fields& fields, bool inpaint);
   void Merge(const ValueStatistics& other);
   void Merge(const Reduction& processes);
 
-  /// R: the largest over the components of max - min; 1 if no value differs.
+  /// R: the largest over the components of max - min, or of RobustRange() where that is at most a
+  /// tenth; 1 if no value differs.
   double Range() const;
-  /// The same of RobustBounds() of each surface; 0 if no value differs.
+  /// The largest over the components of max - min; 0 if no value differs.
+  double WholeRange() const;
+  /// The same of BoundsOfMost() of each surface in each process.
   double RobustRange() const;
   /// The largest magnitude.
   double Magnitude() const { return this->Largest; }

@@ -23,7 +23,7 @@ constexpr double UpdateRange = 5.0;
 void HarmonicMapSettings::Visit(SettingVisitor& visitor)
 {
   this->DataSettings::Visit(visitor);
-  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, false, false, false });
+  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, false, false, false, false });
   visitor.Number({ "Exponent", "",
                    "p, from 1 to 2. 1: equation (21), preserves creases. 2: equation (20), "
                    "smooths evenly." },

@@ -6,6 +6,7 @@
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Statistics/NoiseLevel.h"
 #include "Run/DataPreparation.h"
+#include "Run/FidelitySearch.h"
 #include "Run/ModelInputs.h"
 #include "Run/Rewording.h"
 
@@ -18,10 +19,12 @@ namespace SurfaceDiffusion
 namespace
 {
 
-LinearDiffusion::Scheme SchemeOf(TimeIntegrator integrator)
+LinearDiffusion::Scheme SchemeOf(TimeIntegrator integrator, bool hasWidth)
 {
   switch (integrator)
   {
+    case TimeIntegrator::Automatic:
+      return hasWidth ? LinearDiffusion::Scheme::Exponential : LinearDiffusion::Scheme::SDIRK2;
     case TimeIntegrator::Exponential:
       return LinearDiffusion::Scheme::Exponential;
     case TimeIntegrator::SecondOrder:
@@ -55,13 +58,15 @@ double ShareOfSmallTriangles(const TriangleMesh& mesh, double h, const ParallelF
 void HeatSettings::Visit(SettingVisitor& visitor)
 {
   Rewording reworded(visitor,
-    { { "Tolerance",
-      { "",
-        "The error that an iterative solver may leave in about ten steps, as a part of the range "
-        "of the data, between 0 and 1. It stops at a relative residual of a tenth of it, or less "
-        "where triangles are much smaller than on average." } } });
+    { { "TimeIntegrator",
+        { "", "The time integrator. Automatic: Exponential with FWHM, SecondOrder otherwise." } },
+      { "Tolerance",
+        { "",
+          "The error that an iterative solver may leave in about ten steps, as a part of the range "
+          "of the data, between 0 and 1. It stops at a relative residual of a tenth of it, or less "
+          "where triangles are much smaller than on average." } } });
   this->DataSettings::Visit(reworded);
-  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false, true });
+  VisitTimeIntegrator(reworded, this->TimeIntegrator, { true, true, false, true, true });
   visitor.Choice({ "Mode", "",
                    "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the limit for "
                    "infinite time, in one solve. It is the harmonic function of the fixed or "
@@ -138,6 +143,21 @@ void HeatSettings::WarnOfWidth(const ModelInputs& inputs, RunResult& result) con
   {
     return;
   }
+  constexpr int fewest = 4; // 1.5 % off for white noise, and 6 % with one less
+  const LinearDiffusion::Scheme scheme = SchemeOf(this->TimeIntegrator, true);
+  if (scheme != LinearDiffusion::Scheme::Exponential && this->NumberOfTimeSteps > 0 &&
+    this->NumberOfTimeSteps < fewest)
+  {
+    const bool first = this->TimeIntegrator == SurfaceDiffusion::TimeIntegrator::FirstOrder;
+    result.WarnOnce(Sentence(Word::Setting("NumberOfTimeSteps"))
+      << " is " << this->NumberOfTimeSteps << ", in which "
+      << Word::Choice("TimeIntegrator", this->TimeIntegrator, first ? "FirstOrder" : "SecondOrder")
+      << " misses the blur of " << Word::Setting("FWHM") << " by more than 5 % (allow more steps, "
+      << "or set " << Word::Setting("TimeIntegrator") << " to "
+      << Word::Choice(
+           "TimeIntegrator", SurfaceDiffusion::TimeIntegrator::Exponential, "Exponential")
+      << ")");
+  }
   constexpr double unresolved = 0.1; // changes waves of two edges by a hundredth
   constexpr double flat = 2.0; // leaves a thousandth of the longest waves of a sphere
   const double h = inputs.Units.MeanEdgeLength;
@@ -173,7 +193,7 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
   task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.Anisotropy = this->Anisotropy();
   task.IsPreconditioner = true;
-  const auto make = [&](PointData data, double fidelity)
+  const auto make = [&](PointData data, double fidelity) -> std::unique_ptr<Model>
   {
     task.DiffusionNumber = this->LargestDiffusivity() / (fidelity * h * h);
     const auto solver = inputs.Solvers.Find(SolverPurpose::Step, task);
@@ -182,16 +202,27 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
       std::move(data), fidelity, this->Blur.Make(inputs, limits), solver, limits, inputs.Parallel);
   };
   this->Blur.Warn(inputs, result);
-  double fidelity = this->FidelityWeight * unit;
+  FidelityWeights found{ { this->FidelityWeight * unit } };
   if (this->FindsFidelity())
   {
     const auto blur = this->Blur.Make(inputs, {});
-    fidelity = FindFidelity(
-      inputs, this->NoiseLevel, 1.0 / (h * h), 1,
-      [&](double weight) { return make(inputs.Data, weight); }, result, blur.get());
+    FidelityTask search;
+    search.NoiseLevel = this->NoiseLevel;
+    search.Start = 1.0 / (h * h);
+    search.ColumnsShareWeight = false;
+    search.Blur = blur.get();
+    found = FindFidelity(inputs, search, make, result);
   }
-  result.AddNumber("EffectiveFidelityWeight", fidelity / unit);
-  return make(std::move(inputs.Data), fidelity);
+  result.AddNumber("EffectiveFidelityWeight", found.OfColumns.front() / unit);
+  return found.MakeModels(std::move(inputs.Data),
+    [&](PointData data, double fidelity)
+    {
+      if (found.OfColumns.size() > 1)
+      {
+        inputs.Solvers.Release(SolverPurpose::Step); // each column keeps its own
+      }
+      return make(std::move(data), fidelity);
+    });
 }
 
 std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result) const
@@ -213,7 +244,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   LinearDiffusion::Settings settings;
   settings.TimeStep = timeUnits.ToCore(traits.TimeStep, traits.Time);
   settings.Fidelity = this->FidelityWeight * fidelityUnit;
-  settings.TimeScheme = SchemeOf(this->TimeIntegrator);
+  settings.TimeScheme = SchemeOf(this->TimeIntegrator, this->FWHM > 0.0);
 
   const double h = inputs.Units.CoreEdgeLength();
   SolverTask task;
@@ -228,32 +259,48 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
     task.DiffusionNumber.reset();
   }
 
+  FidelityWeights fidelity{ { settings.Fidelity } };
   double effective = this->FidelityWeight;
   if (this->AutomaticFidelity)
   {
     const auto solver = inputs.Solvers.Find(SolverPurpose::Search, task, solvesPerStep);
-    const auto solve = [&](double fidelity)
+    const auto solve = [&](PointData data, double weight)
     {
       LinearDiffusion::Settings steady;
-      steady.Fidelity = fidelity;
+      steady.Fidelity = weight;
       steady.TimeScheme = LinearDiffusion::Scheme::SteadyState;
-      return std::make_unique<LinearDiffusion>(
-        inputs.Surface.SharedAssembler(), weights, inputs.Data, steady, solver, inputs.Parallel);
+      return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
+        std::move(data), steady, solver, inputs.Parallel);
     };
-    settings.Fidelity = FindFidelity(inputs, this->NoiseLevel, 1.0 / (h * h), 1, solve, result);
-    effective = settings.Fidelity / fidelityUnit;
+    FidelityTask search;
+    search.NoiseLevel = this->NoiseLevel;
+    search.Start = 1.0 / (h * h);
+    search.ColumnsShareWeight = false;
+    fidelity = FindFidelity(inputs, search, solve, result);
+    effective = fidelity.OfColumns.front() / fidelityUnit;
   }
   result.AddNumber("EffectiveFidelityWeight", effective);
-  auto solver = inputs.Solvers.Find(SolverPurpose::Step, task, solvesPerStep);
-  if (this->Mode == HeatMode::TimeSteps)
+  const double smallest = ShareOfSmallTriangles(mesh, h, inputs.Parallel);
+  std::shared_ptr<LinearSolver> solver;
+  const auto make = [&](PointData data, double weight)
   {
-    IterationLimits limits = solver->GetLimits();
-    TightenSteps(limits, ShareOfSmallTriangles(mesh, h, inputs.Parallel));
-    solver->SetLimits(limits);
-    settings.SufficientResidual = limits.AskedTolerance;
-  }
-  return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
-    std::move(inputs.Data), settings, std::move(solver), inputs.Parallel);
+    if (solver) // that of the former column
+    {
+      inputs.Solvers.Release(SolverPurpose::Step);
+    }
+    solver = inputs.Solvers.Find(SolverPurpose::Step, task, solvesPerStep);
+    settings.Fidelity = weight;
+    if (this->Mode == HeatMode::TimeSteps)
+    {
+      IterationLimits limits = solver->GetLimits();
+      TightenSteps(limits, smallest);
+      solver->SetLimits(limits);
+      settings.SufficientResidual = limits.AskedTolerance;
+    }
+    return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
+      std::move(data), settings, solver, inputs.Parallel);
+  };
+  return fidelity.MakeModels(std::move(inputs.Data), make);
 }
 
 } // namespace SurfaceDiffusion

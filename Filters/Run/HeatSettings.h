@@ -18,7 +18,7 @@ enum class HeatMode
 struct HeatSettings : DataSettings
 {
   HeatMode Mode = HeatMode::TimeSteps;
-  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::SecondOrder;
+  SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Automatic;
   double FWHM = 0.0; ///< in coordinate units; 0: TimeStep is used
   bool AutomaticFidelity = false;
   double NoiseLevel = 0.0;

@@ -72,8 +72,8 @@ void RandomFieldRun::Update(
     this->Unresolved << Word::Setting(isGaussian ? "FWHM" : "Range") << " is " << width
                      << ", below two mean edges of " << h << ", which the mesh does not resolve";
   }
-  const bool isInEdges = !((isGaussian ? settings.FWHM : settings.Range) > 0.0);
-  this->UnlikeEdges = isInEdges ? SentenceOfUnlikeEdges(mesh) : Sentence();
+  this->IsInEdges = !((isGaussian ? settings.FWHM : settings.Range) > 0.0);
+  this->UnlikeEdges = this->IsInEdges ? SentenceOfUnlikeEdges(mesh) : Sentence();
   RandomField::Settings field;
   field.Covariance = isGaussian ? FieldCovariance::Gaussian : FieldCovariance::Matern;
   field.Nu = settings.Covariance == RandomFieldSettings::Kind::MaternNu3 ? 3 : 1;
@@ -102,6 +102,10 @@ std::vector<Warning> RandomFieldRun::FindOwnWarnings() const
   if (!this->UnlikeEdges.Words().empty())
   {
     warnings.push_back({ this->UnlikeEdges, this->SurfaceVersion });
+  }
+  if (this->IsInEdges)
+  {
+    this->AppendLongEdges(warnings);
   }
   AppendMissedResidual(this->MissedResidual, warnings);
   return warnings;

@@ -54,6 +54,7 @@ private:
   std::vector<Warning> FindOwnWarnings() const override;
 
   Sentence Unresolved; ///< empty if the mesh resolves the width
+  bool IsInEdges = false; ///< the width is in h
   Sentence UnlikeEdges; ///< empty unless components need widths of their own
   double MissedResidual = 0.0;
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
+#include "Core/Surface/EdgeLengths.h"
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
 #include "Run/LinearLight.h"
@@ -19,6 +20,12 @@ namespace
 /// Squares of values within these bounds neither overflow nor vanish.
 constexpr double LargestMagnitude = 1e100;
 constexpr double SmallestMagnitude = 1e-100;
+
+/// Of the triangles, in LengthUnit()^2.
+double DrawnArea(const TriangleMesh& mesh, const ParallelFor& parallel)
+{
+  return Sum(parallel, mesh.NumberOfTriangles(), [&](Index t) { return mesh.Shapes()[t].Area(); });
+}
 
 } // namespace
 
@@ -116,7 +123,7 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   this->LeaveOutUndetermined(input, *fields, processes, block, progress);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
-  block.Statistics.Add(*block.Surface, *fields, inpaint, !traits.SettingsInRange.empty());
+  block.Statistics.Add(*block.Surface, *fields, inpaint);
   block.HasData = processes.Any(fields->Data.Values.cols() > 0);
   block.HasMask = !mask.empty();
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
@@ -150,17 +157,27 @@ void Run::MeasureUnits(const Reduction& processes)
 {
   double length = 0.0;
   double edges = 0.0;
+  double area = 0.0;
+  this->LongEdges = 0.0;
   ValueStatistics statistics;
   for (const auto& block : this->Blocks)
   {
     const TriangleMesh& mesh = block->Surface->Mesh();
-    edges += mesh.NumberOfEdges();
-    length += mesh.TotalEdgeLength() * mesh.LengthUnit();
+    EdgeLengths ofBlock;
     if (block->Decomposition)
     {
-      edges = processes.Sum(edges - block->Decomposition->NumberOfSharedEdges());
-      length = processes.Sum(length - block->Decomposition->SharedEdgeLength() * mesh.LengthUnit());
+      ofBlock = MeasureEdgeLengths(block->Surface->InputMesh(), processes);
     }
+    else
+    {
+      ofBlock = { mesh.TotalEdgeLength(), static_cast<double>(mesh.NumberOfEdges()),
+        CountLongEdges(block->Surface->InputMesh(), this->Parallel) };
+    }
+    edges += ofBlock.Number;
+    length += ofBlock.Sum * mesh.LengthUnit();
+    const double drawn = DrawnArea(block->Surface->InputMesh(), this->Parallel);
+    area += (block->Decomposition ? processes.Sum(drawn) : drawn) * std::pow(mesh.LengthUnit(), 2);
+    this->LongEdges += ofBlock.LeftOut;
     statistics.Merge(block->Statistics);
   }
   statistics.Merge(processes);
@@ -169,6 +186,7 @@ void Run::MeasureUnits(const Reduction& processes)
   UnitSystem units;
   units.Natural = !this->Settings->IsAbsolute();
   units.MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
+  units.Area = area;
   units.ValueRange = traits.HasValueRange ? statistics.Range() : 1.0;
   if (!std::isfinite(units.ValueRange) || !std::isfinite(units.MeanEdgeLength))
   {
@@ -182,6 +200,7 @@ void Run::MeasureUnits(const Reduction& processes)
     units.ValueUnit = std::exp2(std::ilogb(magnitude));
   }
   this->CommonUnits = units;
+  this->WholeValueRange = statistics.WholeRange();
   this->RobustValueRange = statistics.RobustRange();
   this->UnitOfTime = traits.AbsoluteTime ? 1.0
                                          : std::pow(units.MeanEdgeLength, traits.Time.Length) *
@@ -231,6 +250,7 @@ void Run::MakeModel(
     block.Cells->Start = model->State();
     if (block.HoldsDetail)
     {
+      ScaleFactors(block.Result.FidelityFactors, *block.Cells);
       model = AddCellDetail(std::move(model), *block.Surface, fields, *block.Cells,
         block.Units.CoreValueRange(), block.Solvers, this->Parallel);
     }

@@ -29,9 +29,6 @@ public:
   virtual double FindLengthUnit() = 0;
   /// Give the surface its reductions, and the store its solvers over processes.
   virtual void Attach(Surface& surface, SolverStore& solvers) = 0;
-  /// The number and total length of the edges of this piece that an earlier process has, too.
-  virtual double NumberOfSharedEdges() const = 0;
-  virtual double SharedEdgeLength() const = 0;
   /// Points that are copies of another process's points.
   virtual Index NumberOfCopies() const = 0;
 };
@@ -173,7 +170,8 @@ private:
   std::shared_ptr<RunSettings> Settings;
   std::vector<std::unique_ptr<Block>> Blocks;
   UnitSystem CommonUnits;
-  double RobustValueRange = 0.0; ///< 0: not measured
+  double WholeValueRange = 0.0, RobustValueRange = 0.0; ///< see ValueStatistics
+  double LongEdges = 0.0; ///< the number of edges that do not count for h
   double UnitOfTime = 1.0;
   long long StepsComputed = 0;
   bool KeepsHistory = true;

@@ -4,6 +4,7 @@
 
 #include "Core/Models/Harmonic/HarmonicMap.h"
 #include "Run/BlockSentences.h"
+#include "Run/UnlikeEdges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +31,9 @@ Sentence DescribeMissedTolerance(const Shortfalls& found)
   return text;
 }
 
-Sentence DescribeOutliers(double range, double robust, const std::vector<const char*>& settings)
+/// used: R; robust: without outliers.
+Sentence DescribeOutliers(
+  double used, double whole, double robust, const std::vector<const char*>& settings)
 {
   Sentence names;
   for (const char* const name : settings)
@@ -38,9 +41,17 @@ Sentence DescribeOutliers(double range, double robust, const std::vector<const c
     names << (names.Words().empty() ? "" : " and ") << Word::Setting(name);
   }
   Sentence text;
-  text << "the range R of the values, " << range << ", is that of outliers: it is " << robust
-       << " without the largest and the smallest 0.1 % of the values, and it is the unit of "
-       << names << " (clip or mask the outliers, or set " << Word::Setting("Units") << " to "
+  if (used < whole)
+  {
+    text << "the values have outliers: the range R, the unit of " << names << ", is " << used
+         << ", that of all but 1 % of the surface, in place of " << whole;
+  }
+  else
+  {
+    text << "the range R of the values, " << whole << ", is that of outliers: it is " << robust
+         << " without 1 % of the surface, and it is the unit of " << names;
+  }
+  text << " (clip or mask the outliers, or set " << Word::Setting("Units") << " to "
        << Word::Choice("Units", UnitsMode::Absolute, "Absolute") << ")";
   return text;
 }
@@ -257,12 +268,18 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
   {
     warnings.push_back({ DescribeUndetermined(components), inputs });
   }
-  const std::vector<const char*> inRange = this->Settings->DescribeModel().SettingsInRange;
-  const double range = this->CommonUnits.ValueRange;
-  if (!inRange.empty() && !this->Settings->IsAbsolute() && this->RobustValueRange > 0.0 &&
-    range > OutlierFactor * this->RobustValueRange)
+  if (this->LongEdges > 0.0 && !this->Settings->IsAbsolute() &&
+    !this->Settings->DescribeModel().AbsoluteTime)
   {
-    warnings.push_back({ DescribeOutliers(range, this->RobustValueRange, inRange), inputs });
+    warnings.push_back({ SentenceOfLongEdges(this->LongEdges), surfaces });
+  }
+  const std::vector<const char*> inRange = this->Settings->DescribeModel().SettingsInRange;
+  if (!inRange.empty() && !this->Settings->IsAbsolute() &&
+    this->WholeValueRange > OutlierFactor * this->RobustValueRange)
+  {
+    warnings.push_back({ DescribeOutliers(this->CommonUnits.ValueRange, this->WholeValueRange,
+                           this->RobustValueRange, inRange),
+      inputs });
   }
   const Shortfalls shortfalls = this->FindShortfalls();
   if (shortfalls.MissedResidual > 0.0)

@@ -205,7 +205,7 @@ void VisitTimeIntegrator(
   SettingVisitor& visitor, TimeIntegrator& integrator, const std::vector<bool>& allowed)
 {
   visitor.Choice({ "TimeIntegrator", "", "The time integrator." }, integrator,
-    { "FirstOrder", "SecondOrder", "Implicit", "Exponential" }, allowed);
+    { "FirstOrder", "SecondOrder", "Implicit", "Exponential", "Automatic" }, allowed);
 }
 
 void VisitResultOnCells(SettingVisitor& visitor, bool& onCells)
@@ -222,7 +222,9 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
   visitor.Switch({ "AutomaticFidelity", "",
                    "Choose the fidelity weight by the discrepancy principle (Morozov 1966): the "
                    "result differs from the data by the noise level, where the data are not "
-                   "constant. FidelityWeight is ignored." },
+                   "constant. Each component of the data, unless ChannelCoupling is Joint, and "
+                   "each connected component of the surface has a weight of its own. "
+                   "FidelityWeight is ignored." },
     automatic);
   visitor.Number({ "NoiseLevel", "values",
                    "Standard deviation of the noise for AutomaticFidelity, in the unit of the "

@@ -38,7 +38,8 @@ enum class TimeIntegrator
   FirstOrder,
   SecondOrder,
   Implicit,
-  Exponential
+  Exponential,
+  Automatic
 };
 
 /// The properties of the input arrays that the settings have to agree with.

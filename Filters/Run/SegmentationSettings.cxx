@@ -5,12 +5,16 @@
 #include "Core/Foundation/RobustRange.h"
 #include "Core/Geometry/RegionBoundaries.h"
 #include "Core/Models/Segmentation.h"
+#include "Core/Statistics/NeighbourMeans.h"
+#include "Core/Statistics/NoiseLevel.h"
 #include "Core/Statistics/RegionMeans.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -151,6 +155,46 @@ std::vector<Index> AddRegions(
   return components;
 }
 
+/// The smallest distance between two means that are used.
+double SmallestDistance(const Values& means)
+{
+  const Values used = UsedMeans(means);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < used.rows(); ++k)
+  {
+    for (Eigen::Index l = 0; l < k; ++l)
+    {
+      smallest = std::min(smallest, (used.row(k) - used.row(l)).norm());
+    }
+  }
+  return smallest;
+}
+
+/// The clusters of the values or, under strong noise, whose clusters these would be, those of averages
+/// over neighbours in which the noise is small against their distances. Returns whether it is.
+bool FindMeans(const ModelInputs& inputs, const PointData& data,
+  const std::function<Values(const PointData&)>& cluster, Values& means)
+{
+  constexpr double clear = 2.5; // the distance of means in deviations of the noise
+  constexpr int mostPasses = 64; // over five edges
+  const Assembler& assembler = *inputs.Surface.SharedAssembler();
+  const double noise = EstimateNoise(assembler, inputs.Surface.Points(), data).BetweenNeighbours *
+    (inputs.Cells ? FindCellNoiseGain(inputs) : 1.0);
+  PointData averages = data;
+  means = cluster(averages);
+  bool isStrong = false;
+  double remaining = 1.0;
+  for (int passes = 1; passes <= mostPasses && SmallestDistance(means) < clear * remaining * noise;
+       passes += passes / 2 + 1)
+  {
+    isStrong = true;
+    averages.Given = NeighbourMeans(assembler, data, passes, inputs.Parallel);
+    means = cluster(averages);
+    remaining = 0.4 / std::sqrt(passes); // see NeighbourMeans()
+  }
+  return isStrong;
+}
+
 /// The lambda of AutomaticFidelity, in units of the numerics. Data without contrast need none, but
 /// above 0 their terms keep regions out that are not used.
 double FidelityOfContrast(const ModelInputs& inputs, const Segmentation::Input& input)
@@ -245,7 +289,8 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Switch({ "AutomaticMeans", "",
                    "On: the means of the regions are found, from clusters of the values "
-                   "(k-means) at first. Regions are numbered by ascending mean, unless there "
+                   "(k-means) at first; under strong noise they are clusters of averages over "
+                   "neighbours, and stay. Regions are numbered by ascending mean, unless there "
                    "are seeds. If there are fewer different values than regions, the others are "
                    "not used, and their means are NaN. Off: the means are the given ones, or the "
                    "clusters if none are given." },
@@ -323,13 +368,19 @@ std::unique_ptr<Model> SegmentationSettings::Make(ModelInputs& inputs, RunResult
   settings.MaximumNumberOfAlternations = LargestNumberOfAlternations;
   settings.UpdateMeans = this->AutomaticMeans && !inputs.DataAreTerms;
   Segmentation::Input input;
-  input.Data = std::move(inputs.Data);
+  input.Data = inputs.Data; // which the estimate of noise reads, too
   input.Seeds = std::move(inputs.Seeds);
   if (!inputs.DataAreTerms && (this->AutomaticMeans || this->Means.empty()))
   {
     LimitOutliers(inputs.Units.ValueUnit, input.Data, result);
-    input.Means = FindRegionMeans(inputs.Surface.Mesh(), input.Data, this->NumberOfRegions,
-      input.Seeds, this->RandomSeed, inputs.Ids, inputs.Parallel);
+    const auto cluster = [&](const PointData& data)
+    {
+      return FindRegionMeans(inputs.Surface.Mesh(), data, this->NumberOfRegions, input.Seeds,
+        this->RandomSeed, inputs.Ids, inputs.Parallel);
+    };
+    // The means of values in regions under strong noise would be those of the noise that they fit.
+    const bool isStrong = FindMeans(inputs, input.Data, cluster, input.Means);
+    settings.UpdateMeans = settings.UpdateMeans && !isStrong;
   }
   else if (!inputs.DataAreTerms)
   {

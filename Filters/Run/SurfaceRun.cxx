@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/SurfaceRun.h"
 
+#include "Core/Surface/EdgeLengths.h"
 #include "Run/BlockSentences.h"
 #include "Run/Outputs.h"
+#include "Run/UnlikeEdges.h"
 
 #include <algorithm>
 
@@ -141,6 +143,15 @@ void SurfaceRun::AppendMissedResidual(double residual, std::vector<Warning>& war
     Sentence text("the linear solver missed its tolerance; the largest relative residual is ");
     text << residual;
     warnings.push_back({ text, inputs });
+  }
+}
+
+void SurfaceRun::AppendLongEdges(std::vector<Warning>& warnings) const
+{
+  const double count = CountLongEdges(this->Domain->InputMesh(), this->Parallel);
+  if (count > 0.0)
+  {
+    warnings.push_back({ SentenceOfLongEdges(count), this->SurfaceVersion });
   }
 }
 

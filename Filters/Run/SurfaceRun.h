@@ -71,6 +71,8 @@ protected:
   /// Append a warning unless the number is 0.
   void AppendTurnedTriangles(Index count, std::vector<Warning>& warnings) const;
   void AppendMissedResidual(double residual, std::vector<Warning>& warnings) const;
+  /// Of a result that depends on the mean edge length: the edges that are left out of it.
+  void AppendLongEdges(std::vector<Warning>& warnings) const;
   ///@}
 
   const ParallelFor& Parallel;

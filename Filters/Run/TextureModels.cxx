@@ -29,6 +29,9 @@ constexpr double CoarseTolerance = 1e-4;
 /// changes it more than the time that is left would.
 constexpr double CoarseStopFactor = 2.5;
 
+/// Less, relative to the steady state, is no pattern but what is left of the noise at the start.
+constexpr double LeastContrast = 1e-3;
+
 std::array<double, 3> AsColor(const std::vector<double>& numbers)
 {
   return { numbers.at(0), numbers.at(1), numbers.at(2) };
@@ -99,6 +102,21 @@ std::unique_ptr<Model> TextureSettings::Make(ModelInputs& inputs, RunResult& res
     std::move(*space), std::move(coarse), std::move(model), inputs.Parallel);
 }
 
+double TextureSettings::EffectiveFeatureSize(const ModelInputs& inputs) const
+{
+  constexpr double edgesAcross = 64.0; // that h, and with it the default rates, mean something
+  constexpr double wavesAcross = 8.0;
+  const TextureSettings usual;
+  const bool hasDefaultRates = inputs.Rates.rows() == 0 &&
+    this->DiffusionRate1 == usual.DiffusionRate1 && this->DiffusionRate2 == usual.DiffusionRate2 &&
+    !this->HasDirectedRates();
+  const double across = std::sqrt(inputs.Units.Area);
+  const bool suitsSurface = this->FeatureSize == 0.0 && !this->IsAbsolute() &&
+    across < edgesAcross * inputs.Units.MeanEdgeLength;
+  return suitsSurface && !inputs.Processes.Any(!hasDefaultRates) ? across / wavesAcross
+                                                                 : this->FeatureSize;
+}
+
 /// The rates, scaled to FeatureSize. Reports the wavelength.
 TextureRates TextureSettings::MakeRates(const ModelInputs& inputs, RunResult& result) const
 {
@@ -111,20 +129,21 @@ TextureRates TextureSettings::MakeRates(const ModelInputs& inputs, RunResult& re
     unit, inputs);
   const Eigen::Matrix2d jacobian = this->JacobianAtRest();
   double scale = 1.0;
-  if (units.Natural && !(this->FeatureSize > 0.0))
+  const double size = this->EffectiveFeatureSize(inputs);
+  if (units.Natural && !(size > 0.0))
   {
     WarnOfUnlikeEdges(inputs.Surface.Mesh(), result);
   }
-  if (this->FeatureSize > 0.0)
+  if (size > 0.0)
   {
-    scale = rates.ScaleToFeatureSize(this->FeatureSize / units.LengthUnit, jacobian);
-    if (scale == 0.0)
+    scale = rates.ScaleToFeatureSize(size / units.LengthUnit, jacobian);
+    if (scale == 0.0 && this->FeatureSize > 0.0)
     {
-      scale = 1.0;
       result.Warnings.push_back(Sentence(Word::Setting("FeatureSize"))
         << " has no effect: with these rates and parameters no wave grows faster than the uniform "
            "state");
     }
+    scale = scale == 0.0 ? 1.0 : scale;
     const double diagonal = DiagonalOf(inputs.Surface.Points(), inputs.Processes);
     if (this->FeatureSize > diagonal)
     {
@@ -230,14 +249,29 @@ std::array<ReactionDiffusion::Chemical, 2> TextureSettings::MakeChemicals(ModelI
   return chemicals;
 }
 
-std::vector<Output> TextureSettings::Finish(const RunState& state, RunResult&) const
+std::vector<Output> TextureSettings::Finish(const RunState& state, RunResult& result) const
 {
   std::vector<Output> outputs{ Output::OfColumns("u1", 0, 1), Output::OfColumns("u2", 1, 1) };
   outputs[0].Given = 0;
   outputs[1].Given = 1;
   const Vector shown = state.Path.State().col(this->TextureChemical);
-  const Vector texture =
-    StretchContrast(shown, ContrastLimits(shown, state.Surface.Mesh().GetReduction()));
+  std::array<double, 2> limits = ContrastLimits(shown, state.Surface.Mesh().GetReduction());
+  const double contrast = limits[1] - limits[0];
+  const double rest =
+    GetKinetics(this->Kinetics).SteadyState(this->ChosenParameters())[this->TextureChemical];
+  const double unit = rest != 0.0 ? std::abs(rest) : 1.0; // as that of the noise at the start
+  if (contrast < LeastContrast * unit)
+  {
+    limits[1] = limits[0];
+    if (state.Path.Step() > 0 && this->InitialNoise > LeastContrast)
+    {
+      result.WarnOnce(Sentence("no pattern has grown after ")
+        << state.Path.Step() << " steps: the chemical that the texture shows varies by " << contrast
+        << ", so that the texture is uniform (other rates or kinetics, a smaller "
+        << Word::Setting("FeatureSize") << ", or more steps may let one grow)");
+    }
+  }
+  const Vector texture = StretchContrast(shown, limits);
   outputs.push_back({ "Texture", Place::PerVertex, OutputType::Real, texture });
   if (!this->ColorOutput)
   {

@@ -186,10 +186,12 @@ void TextureRates::WarnOfObstacles(
   const double h = units.MeanEdgeLength;
   if (shortest > 0.0 && shortest < EdgesPerWavelength * h)
   {
-    result.Warnings.push_back("the pattern's wavelength " + Quantity(shortest) + " is only " +
-      Quantity(shortest / h) +
-      " mean edge lengths, which the mesh cannot resolve; allow at least " +
-      Quantity(EdgesPerWavelength) + ", that is, " + Quantity(EdgesPerWavelength * h));
+    result.Warnings.push_back(Sentence("the pattern's wavelength ")
+      << Quantity(shortest) << " is only " << Quantity(shortest / h)
+      << " mean edge lengths, which the mesh cannot resolve; allow at least "
+      << Quantity(EdgesPerWavelength) << ", that is, " << Quantity(EdgesPerWavelength * h)
+      << " (or set " << Word::Setting("RefineTo") << " to "
+      << Quantity(shortest / EdgesOfRefinement) << ")");
   }
 }
 

@@ -20,6 +20,7 @@ struct TextureRates
 
   /// A wavelength with fewer mean edge lengths is not resolved by the mesh.
   static constexpr double EdgesPerWavelength = 6.0;
+  static constexpr double EdgesOfRefinement = 8.0; ///< per wavelength, of a mesh that is refined
 
   /// constant: of u1 along and across, and of u2 likewise, unless inputs.Rates take their place.
   /// unit: that of both. Throws InputError on inputs.Rates that need directions. Collective.

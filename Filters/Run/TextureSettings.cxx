@@ -54,7 +54,7 @@ SettingRange RangeOf(const Kinetics::Parameter& parameter)
 void TextureSettings::Visit(SettingVisitor& visitor)
 {
   this->TimeSettings::Visit(visitor);
-  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false, false });
+  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, true, false, false, false });
   static const std::string kinetics = DescribeKinetics();
   visitor.Choice({ "Kinetics", "", kinetics.c_str() }, this->Kinetics, WordsOfKinetics());
   visitor.Number({ "ReactionRate", "1/time",
@@ -80,11 +80,14 @@ void TextureSettings::Visit(SettingVisitor& visitor)
                    "Diffusion rate of u2 across the direction, 0 or more, in the unit of "
                    "DiffusionRate2. -1: the same as along it." },
     this->DiffusionRateAcross2, across);
-  visitor.Number({ "FeatureSize", "coordinates",
-                   "The wavelength of the pattern: the fastest-growing wavelength along the "
-                   "direction, in the unit of the coordinates. All diffusion rates are "
-                   "multiplied by the factor that gives this wavelength. The mesh should have at "
-                   "least six edges per wavelength. 0: off." },
+  visitor.Number(
+    { "FeatureSize", "coordinates",
+      "The wavelength of the pattern: the fastest-growing wavelength along the "
+      "direction, in the unit of the coordinates. All diffusion rates are "
+      "multiplied by the factor that gives this wavelength. The mesh should have at "
+      "least six edges per wavelength. 0: with the default rates in natural units, an eighth of "
+      "the root of the area where this has fewer than 64 mean edge lengths, and "
+      "otherwise the rates as they are." },
     this->FeatureSize, SettingRange::NonNegative());
   visitor.Number({ "InitialNoise", "",
                    "Half width of the uniform noise around the steady state at the start, "
@@ -224,9 +227,8 @@ void TextureSettings::CheckTogether(const FieldSummary* fields, Problems& proble
 
 double TextureSettings::EdgeLengthForFeatures(double meanEdgeLength) const
 {
-  constexpr double edgesPerWavelength = 8.0;
   return this->FeatureSize < TextureRates::EdgesPerWavelength * meanEdgeLength
-    ? this->FeatureSize / edgesPerWavelength
+    ? this->FeatureSize / TextureRates::EdgesOfRefinement
     : 0.0;
 }
 

@@ -59,6 +59,8 @@ private:
   Eigen::Matrix2d JacobianAtRest() const;
   /// Whether a rate across differs from the rate along.
   bool HasDirectedRates() const;
+  /// FeatureSize, or the wavelength that suits the surface with 0; 0 if the rates stay.
+  double EffectiveFeatureSize(const ModelInputs& inputs) const;
   TextureRates MakeRates(const ModelInputs& inputs, RunResult& result) const;
   Reaction MakeStart(ModelInputs& inputs, bool fromNoise) const;
   bool MayStartCoarse(const ModelInputs& inputs) const;

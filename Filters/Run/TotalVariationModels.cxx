@@ -12,6 +12,7 @@
 #include "Core/Models/TotalVariation/TotalVariationFlow.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Run/DataPreparation.h"
+#include "Run/FidelitySearch.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ public:
 
   /// The lambda of AutomaticFidelity, in units of the numerics: that of the model and steps of the
   /// run itself.
-  double FindFidelityWeight(RunResult& result) const;
+  FidelityWeights FindWeights(RunResult& result) const;
 
   /// Prepares the edges for CrouzeixRaviart. This takes seconds for a million vertices. In the
   /// background it does not delay an abort.
@@ -111,17 +112,25 @@ double TotalVariationModels::FidelityUnit() const
   return this->Units.ToCore(1.0, -this->Time.Length, l1 - this->Time.Value);
 }
 
-double TotalVariationModels::FindFidelityWeight(RunResult& result) const
+FidelityWeights TotalVariationModels::FindWeights(RunResult& result) const
 {
   const double h = this->Units.CoreEdgeLength();
   const bool dimensionless = GetEdgeFunction(this->Options.EdgeFunction).Dimensionless;
   const double start = 1.0 / (h * (dimensionless ? h : this->Units.CoreValueRange()));
   const double tolerance = std::max(SearchTolerance, this->Options.StopTolerance);
   const auto blur = this->Options.Blur.IsOn() ? this->Options.Blur.Make(this->Inputs, {}) : nullptr;
+  FidelityTask search;
+  search.NoiseLevel = this->Options.NoiseLevel;
+  search.Start = start;
+  search.Steps = this->Options.DescribeModel().NumberOfSteps;
+  search.ColumnsShareWeight =
+    this->Options.ChannelCoupling == ChannelCoupling::Joint || !this->Options.Color.IsRGB();
+  search.Blur = blur.get();
   return FindFidelity(
-    this->Inputs, this->Options.NoiseLevel, start, this->Options.DescribeModel().NumberOfSteps,
-    [&](double fidelity) { return this->Make(this->Inputs.Data, fidelity, tolerance); }, result,
-    blur.get());
+    this->Inputs, search,
+    [&](PointData data, double fidelity)
+    { return this->Make(std::move(data), fidelity, tolerance); },
+    result);
 }
 
 void TotalVariationModels::MakeEdges()
@@ -356,10 +365,15 @@ std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResu
   {
     maker.MakeEdges();
   }
-  const double fidelity = this->FindsFidelity() ? maker.FindFidelityWeight(result)
-                                                : this->FidelityWeight * maker.FidelityUnit();
-  result.AddNumber("EffectiveFidelityWeight", fidelity / maker.FidelityUnit());
-  return maker.Make(std::move(inputs.Data), fidelity, this->StopTolerance);
+  const FidelityWeights weights = this->FindsFidelity()
+    ? maker.FindWeights(result)
+    : FidelityWeights{ { this->FidelityWeight * maker.FidelityUnit() } };
+  result.AddNumber("EffectiveFidelityWeight",
+    this->FindsFidelity() ? weights.OfColumns.front() / maker.FidelityUnit()
+                          : this->FidelityWeight);
+  return weights.MakeModels(std::move(inputs.Data),
+    [&](PointData data, double fidelity)
+    { return maker.Make(std::move(data), fidelity, this->StopTolerance); });
 }
 
 } // namespace SurfaceDiffusion

@@ -42,7 +42,7 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
         "Relative residual at which the iterative solver of a FirstOrder step stops, between 0 "
         "and 1." } } });
   this->DataSettings::Visit(reworded);
-  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, false, true, false });
+  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, false, true, false, false });
   visitor.Choice({ "Mode", "",
                    "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the minimiser "
                    "of the energy, computed directly. It requires EdgeFunction TotalVariation, "

@@ -21,6 +21,7 @@ struct UnitSystem
 {
   bool Natural = true;
   double MeanEdgeLength = 1.0; ///< h, in coordinate units
+  double Area = 1.0; ///< of all surfaces, in coordinate units
   double ValueRange = 1.0; ///< R, in the array's units
   double LengthUnit = 1.0; ///< of the mesh of the numerics, in coordinate units
   double ValueUnit = 1.0; ///< of the values of the numerics, in the array's units
@@ -50,7 +51,7 @@ struct UnitSystem
 
   friend bool operator==(const UnitSystem& a, const UnitSystem& b)
   {
-    return a.Natural == b.Natural && a.MeanEdgeLength == b.MeanEdgeLength &&
+    return a.Natural == b.Natural && a.MeanEdgeLength == b.MeanEdgeLength && a.Area == b.Area &&
       a.ValueRange == b.ValueRange && a.LengthUnit == b.LengthUnit && a.ValueUnit == b.ValueUnit;
   }
 };

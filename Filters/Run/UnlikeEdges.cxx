@@ -56,4 +56,16 @@ Sentence SentenceOfUnlikeEdges(const TriangleMesh& mesh)
   return text;
 }
 
+Sentence SentenceOfLongEdges(double count)
+{
+  Sentence text;
+  if (count > 0.0)
+  {
+    text << count << (count == 1.0 ? " edge is" : " edges are")
+         << " longer than 30 times the median edge and left out of the mean edge length h (if they "
+            "belong to spikes, remove these points)";
+  }
+  return text;
+}
+
 } // namespace SurfaceDiffusion

@@ -14,6 +14,9 @@ namespace SurfaceDiffusion
 /// than 1 % of the triangles do not count, nor pieces of a distributed surface.
 Sentence SentenceOfUnlikeEdges(const TriangleMesh& mesh);
 
+/// What to say of edges that are left out of h; see EdgeLengths.h. Empty without any.
+Sentence SentenceOfLongEdges(double count);
+
 inline void WarnOfUnlikeEdges(const TriangleMesh& mesh, RunResult& result)
 {
   const Sentence text = SentenceOfUnlikeEdges(mesh);

@@ -178,11 +178,17 @@ def edge_lengths(points: NDArray[np.float64], triangles: NDArray[Any]) -> NDArra
     return lengths
 
 
+def counted_lengths(points: NDArray[np.float64], triangles: NDArray[Any]) -> NDArray[np.float64]:
+    """Those that count in the mean edge length h: EdgeLengths.h."""
+    lengths = edge_lengths(points, triangles)
+    return lengths[lengths <= 30.0 * np.sort(lengths)[len(lengths) // 2]] if lengths.size else lengths
+
+
 def find_texture_length(surfaces: Sequence[Surface], feature_size: Any) -> float:
     """The length of edges for a texture of this wavelength; 0 if those of the surfaces will do."""
     if not (isinstance(feature_size, (int, float, np.number)) and 0 < feature_size < np.inf):
         return 0.0
-    lengths = np.concatenate([edge_lengths(surface.points, surface.triangles) for surface in surfaces])
+    lengths = np.concatenate([counted_lengths(surface.points, surface.triangles) for surface in surfaces])
     return texture_length(float(lengths.mean()), float(feature_size))
 
 

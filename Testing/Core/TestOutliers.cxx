@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-// A warning where the range R, a natural unit, is that of outliers.
+// The range R, a natural unit, leaves outliers out, or a warning says that it is theirs.
 
 namespace SurfaceDiffusion
 {
@@ -31,7 +31,9 @@ int CountIn(const SurfaceDiffusion::Run& run)
   int count = 0;
   for (const Warning& warning : run.FindWarnings(Alone))
   {
-    count += warning.Sentence.Text().find("is that of outliers") != std::string::npos;
+    const std::string text = warning.Sentence.Text();
+    count += text.find("the values have outliers: the range R") != std::string::npos ||
+      text.find("is that of outliers") != std::string::npos;
   }
   return count;
 }
@@ -42,6 +44,13 @@ int NumberOfWarnings(const std::vector<BlockInput>& blocks, const ModelSettings&
   SurfaceDiffusion::Run run(SerialFor());
   run.Update(blocks, std::make_shared<ModelSettings>(settings), Alone, ProgressMonitor());
   return CountIn(run);
+}
+
+double RangeOf(const RunInput& input)
+{
+  SurfaceDiffusion::Run run(SerialFor());
+  run.Update({ input.Block() }, std::make_shared<HeatSettings>(), Alone, ProgressMonitor());
+  return run.Units().ValueRange;
 }
 
 RunInput Sampled(int level, const std::function<double(Index, const Eigen::RowVector3d&)>& f)
@@ -100,8 +109,7 @@ TEST(Outliers, AreNotFoundInOrdinaryData)
     [&](Index i, const Eigen::RowVector3d&) { return std::exp(gaussian(i)); },
     [&](Index i, const Eigen::RowVector3d&)
     { return std::copysign(std::log(1.0 - UniformRandom(5, 0, i)), gaussian(i)); }, // Laplace
-    [](Index i, const Eigen::RowVector3d& x) { return i % 100 == 0 ? 50.0 : x[2]; },
-    [](Index i, const Eigen::RowVector3d& x) { return i % 300 == 0 ? 50.0 : x[2]; },
+    [](Index i, const Eigen::RowVector3d& x) { return i % 50 == 0 ? 50.0 : x[2]; },
     [](Index i, const Eigen::RowVector3d&) { return i == 7 ? 1.0 : 0.0; },
   };
   for (std::size_t d = 0; d < data.size(); ++d)
@@ -113,6 +121,27 @@ TEST(Outliers, AreNotFoundInOrdinaryData)
         << d << ' ' << level;
     }
   }
+}
+
+TEST(Outliers, AreLeftOutOfTheRangeIfItIsTenTimesAsLargeWithThem)
+{
+  for (const double outlier : { 3.0, 5.0, 11.0, 50.0, -1e6 })
+  {
+    RunInput input = Sampled(4, Step);
+    const double range = RangeOf(input);
+    for (const Eigen::Index i : { 40, 41, 900 })
+    {
+      input.Data.Data.Values(i, 0) = outlier;
+    }
+    const bool isLeftOut = std::abs(outlier) > 10.0 * range;
+    EXPECT_NEAR(
+      RangeOf(input), isLeftOut ? range : outlier - input.Data.Data.Values.minCoeff(), 0.02)
+      << outlier;
+    EXPECT_EQ(NumberOfWarnings({ input.Block() }, TensorDiffusionSettings()), outlier != 3.0);
+  }
+  const RunInput sparse =
+    Sampled(4, [](Index i, const Eigen::RowVector3d&) { return i == 7 ? 1.0 : 0.0; });
+  EXPECT_EQ(RangeOf(sparse), 1.0) << "the rest has no range";
 }
 
 TEST(Outliers, AreThoseOfAllBlocksTogether)

@@ -154,6 +154,8 @@ TEST(RunWarnings, EdgesLeftByTheIntrinsicDelaunayTriangulationAreReported)
   HeatSettings settings;
   settings.IntrinsicDelaunay = true;
   settings.NumberOfTimeSteps = 1;
+  settings.Units = UnitsMode::Absolute; // half of the edges are a thirtieth of the others
+  settings.TimeStep = 1e-2;
   settings.Tolerance = 1e-8; // the needles that are left are ill-conditioned
   EXPECT_TRUE(WarningsOf(RunInput(FanStrip(50)), settings).empty());
   ExpectOne(WarningsOf(RunInput(FanStrip(1500)), settings),
@@ -198,6 +200,7 @@ TEST(RunWarnings, LengthsInEdgesOfComponentsThatAreUnlikeAreReported)
   };
   TextureSettings texture;
   texture.NumberOfTimeSteps = 1;
+  texture.DiffusionRate1 = 22.0; // the default rates have a size of the surface on coarse ones
   EXPECT_TRUE(WarningsOf(pair(0.5), texture).empty());
   ExpectOne(
     WarningsOf(pair(0.01), texture), { "mean edge lengths of connected components go from" });

@@ -264,6 +264,7 @@ TEST(TuringTextureFilter, UnitsOnlyRelabelTheSameRun)
   auto sphere = Sphere(3);
   const auto natural = MakeFilter(sphere, 48);
   natural->SetReactionRate(rate);
+  natural->SetDiffusionRate1(22.0); // the default has a size of the surface on coarse ones
   natural->Update();
   EXPECT_NEAR(natural->GetTimeUnit(), 1.0 / rate, 1e-15);
   const double h = natural->GetMeanEdgeLength();
@@ -271,7 +272,7 @@ TEST(TuringTextureFilter, UnitsOnlyRelabelTheSameRun)
   absolute->SetUnitsToAbsolute();
   absolute->SetReactionRate(rate);
   absolute->SetTimeStep(natural->GetTimeStep() / rate);
-  absolute->SetDiffusionRate1(21.0 * h * h * rate);
+  absolute->SetDiffusionRate1(22.0 * h * h * rate);
   absolute->SetDiffusionRate2(2.6 * h * h * rate);
   absolute->Update();
   EXPECT_EQ(absolute->GetTimeUnit(), 1.0);

@@ -131,7 +131,7 @@ CASES = [
     (lambda: sd.heat(BODY, Z, mode="Steady"), r"mode is 'Steady'; allowed: TimeSteps, SteadyState, or in snake_case"),
     (lambda: sd.heat(BODY, Z, mode=1), r"mode is 1; allowed: TimeSteps, SteadyState, or in snake_case"),
     (lambda: sd.heat(BODY, Z, time_integrator="Implicit", time_step=1),
-     r"time_integrator is 'Implicit'; allowed: FirstOrder, SecondOrder, Exponential, or in snake_case"),
+     r"time_integrator is 'Implicit'; allowed: FirstOrder, SecondOrder, Exponential, Automatic, or in snake_case"),
     (lambda: sd.heat(BODY, Z, intrinsic_delaunay=1, time_step=1),
      r"intrinsic_delaunay is 1; allowed: True or False"),
     (lambda: sd.heat(BODY, Z, fwhm=1, time_step=2),

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <tuple>
 
 namespace SurfaceDiffusion
 {
@@ -41,6 +43,85 @@ ValueBounds RobustBounds(std::vector<double>& values)
   const double lowest = *low;
   std::nth_element(low, high, values.end());
   return { lowest, *high };
+}
+
+namespace
+{
+
+constexpr double ShareOfMost = 0.99; ///< of the area
+
+/// Intervals that are shorter, as a part of the magnitude of their ends, are of round-off.
+constexpr double RoundOff = 1e-6;
+
+/// Whether an interval of a third of the range, 1/OutlierFactor, may have most of the area. Takes
+/// linear time.
+bool MayHaveOutliers(
+  const std::vector<AreaOfValue>& values, const ValueBounds& all, double totalArea)
+{
+  constexpr int bins = 10;
+  double areas[bins] = {};
+  for (const AreaOfValue& value : values)
+  {
+    const double place = (value.Value - all.Low) / all.Width() * bins;
+    areas[std::min(static_cast<int>(place), bins - 1)] += value.Area;
+  }
+  constexpr int third = 5; // bins that it touches, wherever it begins
+  for (int first = 0; first + third <= bins; ++first)
+  {
+    if (std::accumulate(areas + first, areas + first + third, 0.0) >= ShareOfMost * totalArea)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+} // namespace
+
+ValueBounds BoundsOfMost(std::vector<AreaOfValue>& values)
+{
+  ValueBounds all;
+  double total = 0.0;
+  for (const AreaOfValue& value : values)
+  {
+    all.Widen({ value.Value, value.Value });
+    total += value.Area;
+  }
+  if (!(all.Width() > 0.0) || !MayHaveOutliers(values, all, total))
+  {
+    return all;
+  }
+  std::sort(values.begin(), values.end(),
+    [](const AreaOfValue& a, const AreaOfValue& b)
+    { return std::tie(a.Value, a.Area) < std::tie(b.Value, b.Area); });
+  ValueBounds most = all;
+  double area = 0.0; // from low to high, both inclusive
+  for (std::size_t low = 0, high = 0; high < values.size(); ++high)
+  {
+    area += values[high].Area;
+    for (; area >= ShareOfMost * total; ++low)
+    {
+      if (values[high].Value - values[low].Value < most.Width())
+      {
+        most = { values[low].Value, values[high].Value };
+      }
+      area -= values[low].Area;
+    }
+  }
+  const double margin = most.Width();
+  if (!(margin > RoundOff * std::max(std::abs(most.Low), std::abs(most.High))))
+  {
+    return all;
+  }
+  ValueBounds found;
+  for (const AreaOfValue& value : values)
+  {
+    if (value.Value >= most.Low - margin && value.Value <= most.High + margin)
+    {
+      found.Widen({ value.Value, value.Value });
+    }
+  }
+  return found;
 }
 
 double RobustRange(const Values& values, const Flags& missing, const Reduction& reduction)

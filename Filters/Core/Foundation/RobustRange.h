@@ -28,6 +28,17 @@ constexpr double OutlierFactor = 3.0;
 /// left out, from 100 values on at least one of each. Takes linear time, and reorders the values.
 ValueBounds RobustBounds(std::vector<double>& values);
 
+/// A value, and the area that it stands for.
+struct AreaOfValue
+{
+  double Value, Area;
+};
+
+/// The extremes of finite values without the outliers, which have at most 1 % of the area: those
+/// that are farther from the shortest interval with 99 % of it than this is long. With no such
+/// interval of positive length all values count. Reorders the values.
+ValueBounds BoundsOfMost(std::vector<AreaOfValue>& values);
+
 /// The largest width over the columns of RobustBounds() of the values at vertices that are not
 /// missing. Over several processes the widest of their bounds count. 0 without values.
 double RobustRange(const Values& values, const Flags& missing, const Reduction& reduction);

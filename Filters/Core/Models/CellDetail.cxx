@@ -85,7 +85,13 @@ void CellDetail::StepBackwardEuler(
   {
     const auto share = [&](Eigen::Index column)
     { return static_cast<double>(column) / static_cast<double>(columns); };
-    this->AdvanceColumns(first, first + together, model, step, report,
+    DiffusionStep ofColumn = step;
+    if (!step.SharesTensor)
+    {
+      model.DiffusionWeights(first);
+      ofColumn.Fidelity = model.Diffusion().Fidelity; // ColumnModels have one for each
+    }
+    this->AdvanceColumns(first, first + together, model, ofColumn, report,
       progress.Part(share(first), share(first + together)));
   }
 }

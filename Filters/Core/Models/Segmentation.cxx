@@ -155,7 +155,10 @@ StepReport Segmentation::Advance(const ProgressMonitor& progress)
     done = next;
     report.Iterations += last.Iterations;
     this->Alternations = alternation + 1;
-    if (!this->Options.UpdateMeans ||
+    // Means that leave hardly any contrast, as of regions that are too small to be kept, settle late
+    // or never.
+    const bool isLate = report.Iterations >= 2 * this->Options.MaximumNumberOfIterations;
+    if (!this->Options.UpdateMeans || isLate ||
       alternation + 1 == this->Options.MaximumNumberOfAlternations || !this->UpdateMeans())
     {
       break;

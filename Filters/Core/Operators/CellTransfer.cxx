@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -221,6 +222,36 @@ double CellTransfer::NoiseGain(const std::vector<Index>& measuredAs, const Flags
     [&](Index i)
     { return sums(i, 1) > 0.0 ? sums(i, 0) * sums(i, 2) / (sums(i, 1) * sums(i, 1)) : 0.0; });
   return area > 0.0 ? std::sqrt(variance / area) : 1.0;
+}
+
+double CellTransfer::DeviationOf(const std::vector<Index>& vertices, const Vector& weights,
+  const std::vector<Index>& measuredAs) const
+{
+  std::vector<std::pair<Index, double>> terms; // values, and what they are multiplied by
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+  {
+    double sum = 0.0;
+    this->ForEachCornerAround(vertices[v], [&](const Corner& corner) { sum += corner.Share; });
+    this->ForEachCornerAround(vertices[v],
+      [&](const Corner& corner)
+      {
+        terms.emplace_back(
+          measuredAs.empty() ? corner.Cell : measuredAs[static_cast<std::size_t>(corner.Cell)],
+          weights[static_cast<Eigen::Index>(v)] * corner.Share / sum);
+      });
+  }
+  std::sort(terms.begin(), terms.end());
+  double variance = 0.0;
+  for (std::size_t k = 0; k < terms.size();)
+  {
+    double ofValue = 0.0;
+    for (const Index value = terms[k].first; k < terms.size() && terms[k].first == value; ++k)
+    {
+      ofValue += terms[k].second;
+    }
+    variance += ofValue * ofValue;
+  }
+  return std::sqrt(variance);
 }
 
 } // namespace SurfaceDiffusion

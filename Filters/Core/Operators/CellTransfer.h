@@ -95,6 +95,11 @@ public:
   /// empty. Collective.
   double NoiseGain(const std::vector<Index>& measuredAs = {}, const Flags& leftOut = Flags()) const;
 
+  /// The standard deviation of the sum of weights times P f at vertices, for white noise f of
+  /// deviation 1. measuredAs: see NoiseGain(). Of the cells of this process.
+  double DeviationOf(const std::vector<Index>& vertices, const Vector& weights,
+    const std::vector<Index>& measuredAs = {}) const;
+
 private:
   /// A corner of a cell.
   struct Corner

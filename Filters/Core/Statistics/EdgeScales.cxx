@@ -6,6 +6,7 @@
 #include "Core/Foundation/RobustRange.h"
 #include "Core/Statistics/LinearFit.h"
 #include "Core/Statistics/NoiseLevel.h"
+#include "Core/Surface/EdgeLengths.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -94,10 +95,10 @@ public:
     return length > 0.0 ? length : 1.0;
   }
 
-  /// Of the edges between neighbours; 0 if there are none.
+  /// Of the edges between neighbours, but for those of spikes; 0 if there are none.
   double MeanLength(const SparsePattern& pattern) const
   {
-    double sum = 0.0, count = 0.0;
+    std::vector<double> lengths;
     for (Index i = this->Data.Range.Begin; i < this->Data.Range.End; ++i)
     {
       for (Index slot = pattern.Outer[i]; slot < pattern.Outer[i + 1]; ++slot)
@@ -105,12 +106,12 @@ public:
         const Index j = pattern.Inner[slot];
         if (j != i)
         {
-          sum += (this->Point(i) - this->Point(j)).norm();
-          count += 1.0;
+          lengths.push_back((this->Point(i) - this->Point(j)).norm());
         }
       }
     }
-    return count > 0.0 ? sum / count : 0.0;
+    const EdgeLengths counted = MeasureEdgeLengths(lengths);
+    return counted.Number > 0.0 ? counted.Sum / counted.Number : 0.0;
   }
 
   /// Without outliers, but for data that are constant without them, in the Euclidean norm over the

@@ -113,7 +113,7 @@ Points OffsetsFrom(Index vertex, const std::vector<Index>& vertices, const FitDa
 
 double RobustDeviation(std::vector<double>& deviations)
 {
-  return 1.4826 * Median(deviations);
+  return GaussianFactor * Median(deviations);
 }
 
 } // namespace

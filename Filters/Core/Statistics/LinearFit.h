@@ -75,6 +75,9 @@ LinearFit FitAround(Index vertex, int edges, Rings& rings, const FitData& data);
 /// it needs 12. None to more than 100.
 LinearFit FitCubicAround(Index vertex, Rings& rings, const FitData& data);
 
+/// The standard deviation of Gaussian numbers over the median of their absolute values.
+constexpr double GaussianFactor = 1.4826;
+
 /// Absolute deviations of columns of data.
 class RobustDeviations
 {

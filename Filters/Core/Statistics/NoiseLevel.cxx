@@ -105,9 +105,14 @@ VertexRange AllVertices(const Assembler& assembler)
 
 Flags FindVaryingVertices(const Assembler& assembler, const PointData& data)
 {
+  return FindVaryingVertices(assembler, assembler.Pattern(), data, AllVertices(assembler));
+}
+
+Flags FindVaryingVertices(const Assembler& assembler, const SparsePattern& pattern,
+  const PointData& data, VertexRange range)
+{
   const Points none;
-  const SparsePattern pattern = assembler.Pattern();
-  return FindVarying({ assembler, pattern, none, data, AllVertices(assembler) });
+  return FindVarying({ assembler, pattern, none, data, range });
 }
 
 NoiseEstimate EstimateNoise(
@@ -151,11 +156,55 @@ NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pat
   return estimate;
 }
 
+double ExpectedEstimate(const Assembler& assembler, const Eigen::Ref<const Points>& points,
+  const PointData& given,
+  const std::function<double(const std::vector<Index>&, const Vector&)>& deviationOf)
+{
+  const SparsePattern pattern = assembler.Pattern();
+  const FitData data(assembler, pattern, points, given, AllVertices(assembler));
+  Rings rings = data.MakeRings();
+  std::vector<double> deviations; // of the residuals
+  double largest = 0.0;
+  for (const Index i : data.SampleVertices(LargestSample))
+  {
+    LinearFit fit = data.IsMissing(i) ? LinearFit() : FitAround(i, 1, rings, data);
+    if (fit.Weights.size() > 0)
+    {
+      Vector weights(fit.Weights.size() + 1);
+      weights << fit.Weights, -fit.Weights.sum();
+      fit.Known.push_back(i);
+      deviations.push_back(
+        deviationOf(fit.Known, weights) / std::sqrt(1.0 + fit.Weights.squaredNorm()));
+      largest = std::max(largest, deviations.back());
+    }
+  }
+  // The median of the absolute values of Gaussian numbers of these deviations.
+  double low = 0.0;
+  double high = largest;
+  for (int halving = 0; halving < 50; ++halving)
+  {
+    const double middle = 0.5 * (low + high);
+    double below = 0.0;
+    for (const double deviation : deviations)
+    {
+      below += deviation > 0.0 ? std::erf(middle / (std::sqrt(2.0) * deviation)) : 1.0;
+    }
+    (2.0 * below < static_cast<double>(deviations.size()) ? low : high) = middle;
+  }
+  return GaussianFactor * high;
+}
+
 double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values& u)
+{
+  return Discrepancy(mesh, data, u, { 0, mesh.NumberOfVertices() });
+}
+
+double Discrepancy(
+  const TriangleMesh& mesh, const PointData& data, const Values& u, VertexRange range)
 {
   double sum = 0.0;
   double area = 0.0;
-  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  for (Index i = range.Begin; i < range.End; ++i)
   {
     const double weight = mesh.ControlAreas()[i] * data.FidelityFactor(i);
     if (weight > 0.0)
@@ -167,51 +216,82 @@ double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values
   return area > 0.0 ? std::sqrt(sum / (area * static_cast<double>(u.cols()))) : 0.0;
 }
 
+DiscrepancySearch::DiscrepancySearch(double noiseLevel, double start)
+  : Noise(noiseLevel)
+  , Origin(std::log(start))
+  , X(this->Origin)
+{
+}
+
+DiscrepancySearch::DiscrepancySearch(double weight)
+  : DiscrepancySearch(0.0, weight)
+{
+  this->Phase = Done;
+}
+
+void DiscrepancySearch::Take(double discrepancy)
+{
+  const double f = discrepancy - this->Noise;
+  switch (this->Phase)
+  {
+    case Start:
+      this->FA = f;
+      this->A = this->X;
+      this->Stride = f > 0.0 ? std::log(4.0) : -std::log(4.0);
+      this->Phase = Bracketing;
+      break;
+    case Inside:
+      if (f * this->FB <= 0.0)
+      {
+        this->A = this->B;
+        this->FA = this->FB;
+      }
+      else
+      {
+        this->FA *= 0.5; // the same end twice: pull the other one in
+      }
+      this->IsClose = std::abs(this->X - this->B) < 0.01 || f == 0.0;
+      break;
+    default:
+      break;
+  }
+  this->B = this->X;
+  this->FB = f;
+  this->FindNext();
+}
+
+void DiscrepancySearch::FindNext()
+{
+  if (this->Phase == Bracketing && this->FA * this->FB > 0.0)
+  {
+    this->HasRoot = std::abs(this->B - this->Origin) <= std::log(1e8);
+    this->A = this->B;
+    this->FA = this->FB;
+    if (this->HasRoot)
+    {
+      this->X = this->B + this->Stride;
+      return;
+    }
+  }
+  else if (!this->IsClose && std::abs(this->B - this->A) > 0.01 && this->FA != this->FB)
+  {
+    this->Phase = Inside;
+    this->X = (this->A * this->FB - this->B * this->FA) / (this->FB - this->FA);
+    return;
+  }
+  this->Phase = Done;
+  this->X = this->B;
+}
+
 FidelityChoice FindFidelityByDiscrepancy(
   const std::function<double(double)>& discrepancy, double noiseLevel, double start)
 {
-  // Bracket the root in log(lambda) by factors of 4, then regula falsi (Illinois) inside.
-  const auto excess = [&](double x) { return discrepancy(std::exp(x)) - noiseLevel; };
-  const double limit = std::log(1e8);
-  const double origin = std::log(start);
-  double a = origin;
-  double fa = excess(a);
-  const double stride = fa > 0.0 ? std::log(4.0) : -std::log(4.0);
-  double b = a;
-  double fb = fa;
-  while (fa * fb > 0.0)
+  DiscrepancySearch search(noiseLevel, start);
+  while (!search.IsDone())
   {
-    if (std::abs(b - origin) > limit)
-    {
-      return { std::exp(b), fb + noiseLevel, false };
-    }
-    a = b;
-    fa = fb;
-    b += stride;
-    fb = excess(b);
+    search.Take(discrepancy(search.Trial()));
   }
-  while (std::abs(b - a) > 0.01 && fa != fb)
-  {
-    const double x = (a * fb - b * fa) / (fb - fa);
-    const double fx = excess(x);
-    if (fx * fb <= 0.0)
-    {
-      a = b;
-      fa = fb;
-    }
-    else
-    {
-      fa *= 0.5; // the same end twice: pull the other one in
-    }
-    const bool close = std::abs(x - b) < 0.01;
-    b = x;
-    fb = fx;
-    if (close || fb == 0.0)
-    {
-      break;
-    }
-  }
-  return { std::exp(b), fb + noiseLevel, true };
+  return search.Found();
 }
 
 } // namespace SurfaceDiffusion

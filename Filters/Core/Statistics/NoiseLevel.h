@@ -6,7 +6,9 @@
 #include "Core/Operators/Rings.h"
 #include "Core/Surface/PointData.h"
 
+#include <cmath>
 #include <functional>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -33,6 +35,11 @@ struct NoiseEstimate
 /// none is varying.
 Flags FindVaryingVertices(const Assembler& assembler, const PointData& data);
 
+/// The same of the vertices of some connected components, one entry for each of them. pattern: that
+/// of the assembler.
+Flags FindVaryingVertices(const Assembler& assembler, const SparsePattern& pattern,
+  const PointData& data, VertexRange range);
+
 /// Estimates the noise from the residuals r_i of local linear fits: the difference of f_i and the
 /// value at vertex i of the linear function, in the tangent plane, fitted to the known vertices at
 /// a distance of 1 edge from i, and then of 2, 4 and 8 edges while the result grows by more than
@@ -51,6 +58,14 @@ NoiseEstimate EstimateNoise(
 NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pattern,
   const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range);
 
+/// What EstimateNoise() finds between neighbours, on average, in noise that is known everywhere and
+/// has the same distribution but not the same correlation as white noise of deviation 1.
+/// deviationOf(vertices, weights): the standard deviation of the sum of weights times values there.
+/// 0 if no vertex has enough others around.
+double ExpectedEstimate(const Assembler& assembler, const Eigen::Ref<const Points>& points,
+  const PointData& data,
+  const std::function<double(const std::vector<Index>&, const Vector&)>& deviationOf);
+
 /// A fidelity weight, and the root mean square of u - f that it leaves.
 struct FidelityChoice
 {
@@ -59,16 +74,49 @@ struct FidelityChoice
   bool IsFound = true; ///< false: Weight is the end of the search
 };
 
-/// The fidelity weight at which the mean square of u - f equals the noise: discrepancy principle
-/// (Morozov 1966). discrepancy(lambda), the root mean square of u - f at lambda, must not
-/// increase with lambda. `start` is the first guess, of the right units. Stops at 1 % in lambda. If
-/// even lambda = 1e-8 start leaves less than the noise, that lambda is returned as not found;
-/// likewise 1e8 start.
+/// The search for the fidelity weight at which the mean square of u - f equals the noise:
+/// discrepancy principle (Morozov 1966). The root mean square of u - f must not increase with the
+/// weight. Stops at 1 % in the weight. If even 1e-8 of the first guess leaves less than the noise,
+/// that weight is returned as not found; likewise 1e8 of it. Brackets the root by factors of 4, then
+/// regula falsi (Illinois) in its logarithm.
+class DiscrepancySearch
+{
+public:
+  /// start: the first guess, of the right units.
+  DiscrepancySearch(double noiseLevel, double start);
+  /// A search that has found this weight.
+  explicit DiscrepancySearch(double weight);
+
+  bool IsDone() const { return this->Phase == Done; }
+  double Trial() const { return std::exp(this->X); } ///< the weight to try, or the found one
+  void Take(double discrepancy); ///< of the trial
+  FidelityChoice Found() const { return { this->Trial(), this->FB + this->Noise, this->HasRoot }; }
+
+private:
+  void FindNext();
+
+  enum
+  {
+    Start,
+    Bracketing,
+    Inside,
+    Done
+  } Phase = Start;
+  double Noise, Origin, X;
+  double Stride = 0.0;
+  double A = 0.0, B = 0.0; ///< logarithms of two weights
+  double FA = 0.0, FB = 0.0; ///< their discrepancies above the noise
+  bool IsClose = false, HasRoot = true;
+};
+
+/// The weight that a DiscrepancySearch finds. discrepancy(lambda): the root mean square of u - f.
 FidelityChoice FindFidelityByDiscrepancy(
   const std::function<double(double)>& discrepancy, double noiseLevel, double start);
 
 /// Root of the area-weighted mean of w (u - f)^2 over the known vertices and the columns, divided
 /// by that of the fidelity factors w.
 double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values& u);
+double Discrepancy(
+  const TriangleMesh& mesh, const PointData& data, const Values& u, VertexRange range);
 
 } // namespace SurfaceDiffusion

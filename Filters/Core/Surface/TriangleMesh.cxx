@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/Grouping.h"
 #include "Core/Foundation/IndexSet.h"
+#include "Core/Surface/EdgeLengths.h"
 #include "Core/Surface/MeshNumbering.h"
 
 #include <algorithm>
@@ -183,6 +184,12 @@ void TriangleMesh::MeasureEdges(const ParallelFor& parallel)
     boundary.insert(boundary.end(), sums.BoundaryVertices.begin(), sums.BoundaryVertices.end());
   }
   mesh.NumberOfEdges = ends / 2;
+  if (CountLongEdges(*this, parallel) > 0.0)
+  {
+    const EdgeLengths counted = MeasureEdgeLengths(*this, Reduction::Serial());
+    mesh.TotalEdgeLength = counted.Sum;
+    mesh.NumberOfEdges = static_cast<Index>(counted.Number);
+  }
   std::sort(boundary.begin(), boundary.end());
   boundary.erase(std::unique(boundary.begin(), boundary.end()), boundary.end());
 }

@@ -55,7 +55,6 @@ class SurfaceFile:
         found = [shape for word, shape in _SHAPES.items() if word in words[1:]]
         return found[0] if found else ""
 
-    @property
     def beside(self):
         """The colours of the vertices (n, 3) of uint8, or None, and the names of what else the file has
         beside points, faces and normals."""

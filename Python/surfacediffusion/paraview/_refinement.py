@@ -14,7 +14,7 @@ from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkDataArray, vtkIdTypeArray, vt
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
 from .. import _core
-from .._refinement import edge_lengths, interpolate_points, interpolate_weights
+from .._refinement import counted_lengths, interpolate_points, interpolate_weights
 from ._results import copy_component_names, make_array
 from ._surfaces import BETWEEN, GIVEN_CELL, Block, Shapes, to_numpy
 
@@ -27,7 +27,7 @@ def mean_edge_length(blocks: list[Block], shapes: Shapes) -> float:
         triangles = shape.core.triangles()
         if shape.total_edge_length is None:
             points = to_numpy(block.input.GetPoints().GetData()).astype(np.float64)
-            found = edge_lengths(points, triangles)
+            found = counted_lengths(points, triangles)
             shape.total_edge_length, shape.number_of_edges = float(found.sum()), len(found)
         lengths.append(shape.total_edge_length)
         counts.append(shape.number_of_edges)

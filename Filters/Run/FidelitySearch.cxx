@@ -1,0 +1,353 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Run/FidelitySearch.h"
+
+#include "Core/Models/ColumnModels.h"
+#include "Core/Models/HeatBlur.h"
+#include "Core/Statistics/MeasuredVertices.h"
+#include "Core/Statistics/NoiseCorrelation.h"
+#include "Core/Statistics/NoiseLevel.h"
+#include "Run/DataPreparation.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace SurfaceDiffusion
+{
+
+namespace
+{
+
+/// In first guesses of the search: keeps data to seven digits.
+constexpr double WeightWithoutNoise = 1e8;
+
+/// One column of the data, or all of them.
+PointData DataOfColumns(const PointData& data, Eigen::Index first, Eigen::Index count)
+{
+  PointData some = data;
+  if (count < data.Given.cols())
+  {
+    some.Given = data.Given.middleCols(first, count);
+    some.Start = data.Start.middleCols(first, count);
+  }
+  return some;
+}
+
+void MultiplyFactors(PointData& data, const Eigen::Ref<const Vector>& by)
+{
+  data.FidelityFactors =
+    data.FidelityFactors.size() > 0 ? Vector(data.FidelityFactors.cwiseProduct(by)) : Vector(by);
+}
+
+/// Messages about several columns and components, of each kind the first, with the number of the
+/// others.
+class Notes
+{
+public:
+  enum Kind
+  {
+    Correlated,
+    Smooth,
+    Undetermined,
+    WithoutNoise,
+    NotFound
+  };
+
+  void Add(Kind kind, const Sentence& text)
+  {
+    const auto found = this->Texts.insert({ kind, { text, 0 } }).first;
+    ++found->second.second;
+  }
+
+  void AppendTo(RunResult& result) const
+  {
+    for (const auto& [kind, note] : this->Texts)
+    {
+      Sentence text = note.first;
+      if (note.second > 1)
+      {
+        text << ", and likewise in " << note.second - 1
+             << " more of the columns and connected components";
+      }
+      result.Warnings.push_back(text);
+    }
+  }
+
+private:
+  std::map<Kind, std::pair<Sentence, int>> Texts;
+};
+
+/// The search of some columns, for the weight of each connected component.
+class ColumnSearch
+{
+public:
+  ColumnSearch(const ModelInputs& inputs, const FidelityTask& task, PointData data, Notes& notes);
+
+  bool IsDone() const
+  {
+    return std::all_of(this->Parts.begin(), this->Parts.end(),
+      [](const Part& part) { return part.Search.IsDone(); });
+  }
+  /// Compare the state of a model of the trial weights with the data.
+  void Advance(const FidelityModelMaker& makeModel);
+  void WarnIfNotFound(Notes& notes) const;
+
+  double Weight() const { return this->Parts[this->Largest].Search.Trial(); }
+  /// The weights over that of the largest component, per vertex; no entry if there is one.
+  Vector Factors() const;
+
+private:
+  struct Part
+  {
+    VertexRange Vertices;
+    double Noise;
+    DiscrepancySearch Search;
+  };
+
+  NoiseEstimate Estimate(VertexRange range, Notes& notes);
+  double FindNoise(VertexRange range, Notes& notes);
+  void LeaveOutConstantParts(VertexRange range);
+  void NoteSmoothData(double estimate, Notes& notes) const;
+
+  const ModelInputs& Inputs;
+  const FidelityTask& Task;
+  PointData Data;
+  const SparsePattern Pattern;
+  std::vector<Part> Parts; ///< connected components
+  std::size_t Largest = 0;
+  PointData Compared; ///< the measured data that the result has to differ from by the noise
+};
+
+ColumnSearch::ColumnSearch(
+  const ModelInputs& inputs, const FidelityTask& task, PointData data, Notes& notes)
+  : Inputs(inputs)
+  , Task(task)
+  , Data(std::move(data))
+  , Pattern(inputs.Surface.SharedAssembler()->Pattern())
+  , Compared(this->Data)
+{
+  const std::vector<Index>& begin = inputs.Surface.Mesh().ComponentsBegin();
+  std::vector<std::size_t> order(begin.size() - 1); // the largest first
+  std::iota(order.begin(), order.end(), std::size_t{ 0 });
+  const auto rangeOf = [&](std::size_t c) { return VertexRange{ begin[c], begin[c + 1] }; };
+  std::stable_sort(order.begin(), order.end(),
+    [&](std::size_t a, std::size_t b) { return rangeOf(a).Size() > rangeOf(b).Size(); });
+  for (const std::size_t c : order)
+  {
+    const VertexRange range = rangeOf(c);
+    const double noise = this->FindNoise(range, notes);
+    this->Parts.push_back({ range, noise, { noise, task.Start } });
+    if (noise > 0.0)
+    {
+      this->LeaveOutConstantParts(range);
+    }
+    else
+    {
+      this->Parts.back().Search = DiscrepancySearch(WeightWithoutNoise * task.Start);
+    }
+  }
+}
+
+NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
+{
+  const Assembler& assembler = *this->Inputs.Surface.SharedAssembler();
+  const Points& points = this->Inputs.Surface.Points();
+  NoiseEstimate found = EstimateNoise(assembler, this->Pattern, points, this->Data, range);
+  const VertexRange all{ 0, this->Inputs.Surface.Mesh().NumberOfVertices() };
+  if (found.IsUndetermined && range.Size() < all.Size())
+  {
+    found = EstimateNoise(assembler, this->Pattern, points, this->Data, all);
+  }
+  const double unit = this->Inputs.Units.ValueUnit;
+  if (!this->Inputs.Cells && found.IsCorrelated())
+  {
+    notes.Add(Notes::Correlated,
+      Sentence("the noise is correlated: its standard deviation is ")
+        << found.BetweenNeighbours * unit << " between neighbours and " << found.Level() * unit
+        << " farther apart, which " << Word::Setting("AutomaticFidelity")
+        << " uses (to set another, use " << Word::Setting("NoiseLevel") << ")");
+  }
+  return found;
+}
+
+double ColumnSearch::FindNoise(VertexRange range, Notes& notes)
+{
+  NoiseEstimate estimate;
+  double noise = NoiseAtVertices(this->Inputs, this->Task.NoiseLevel);
+  if (this->Task.NoiseLevel == 0.0)
+  {
+    estimate = this->Estimate(range, notes);
+    noise =
+      this->Inputs.Cells ? estimate.BetweenNeighbours * this->Task.CellNoiseGain : estimate.Level();
+    if (!this->Inputs.Cells && !estimate.IsCorrelated() && this->Parts.empty())
+    {
+      this->NoteSmoothData(noise, notes);
+    }
+  }
+  if (noise == 0.0)
+  {
+    Sentence text = Word::Setting("AutomaticFidelity");
+    text
+      << (estimate.IsUndetermined
+             ? " finds no known value, of a weight other than 0, with enough others around it to "
+               "estimate the noise from, so that known values stay as they are"
+             : " finds no noise in the data, which stay as they are")
+      << " (to set the standard deviation of the noise, use " << Word::Setting("NoiseLevel") << ")";
+    notes.Add(estimate.IsUndetermined ? Notes::Undetermined : Notes::WithoutNoise, text);
+  }
+  return noise;
+}
+
+/// The estimate of noise between neighbours is that of white noise. A note if there is none.
+void ColumnSearch::NoteSmoothData(double estimate, Notes& notes) const
+{
+  const NeighbourVariation variation = MeasureVariation(
+    *this->Inputs.Surface.SharedAssembler(), this->Inputs.Surface.Points(), this->Data, estimate);
+  if (!variation.IsSmooth())
+  {
+    return;
+  }
+  const double unit = this->Inputs.Units.ValueUnit;
+  const Word level = Word::Setting("NoiseLevel");
+  Sentence text = level;
+  text << ": the data show no white noise but are smooth over about " << variation.Width
+       << " (full width at half maximum), as correlated noise is, so that its estimate, "
+       << estimate * unit << ", may be too small; without a signal the noise is "
+       << variation.Deviation * unit << " (set " << level << ")";
+  notes.Add(Notes::Smooth, text);
+}
+
+void ColumnSearch::LeaveOutConstantParts(VertexRange range)
+{
+  const Flags varying =
+    FindVaryingVertices(*this->Inputs.Surface.SharedAssembler(), this->Pattern, this->Data, range);
+  auto missing = this->Compared.Missing.segment(range.Begin, range.Size());
+  if (varying.any())
+  {
+    missing = !varying;
+  }
+  else if (this->Data.Measured)
+  {
+    missing = missing || this->Data.Measured->IsBetween.segment(range.Begin, range.Size());
+  }
+}
+
+Vector ColumnSearch::Factors() const
+{
+  Vector factors;
+  if (this->Parts.size() > 1)
+  {
+    factors.resize(this->Data.Given.rows());
+    for (const Part& part : this->Parts)
+    {
+      factors.segment(part.Vertices.Begin, part.Vertices.Size())
+        .setConstant(part.Search.Trial() / this->Weight());
+    }
+  }
+  return factors;
+}
+
+void ColumnSearch::Advance(const FidelityModelMaker& makeModel)
+{
+  PointData data = this->Data;
+  const Vector factors = this->Factors();
+  if (factors.size() > 0)
+  {
+    MultiplyFactors(data, factors);
+  }
+  const std::unique_ptr<Model> model = makeModel(std::move(data), this->Weight());
+  for (int step = 0; step < this->Task.Steps; ++step)
+  {
+    model->Advance(this->Inputs.Progress.Part(0.5, 0.5));
+  }
+  Values predicted = model->State();
+  if (this->Task.Blur)
+  {
+    StepReport unused;
+    this->Task.Blur->Apply(predicted, unused);
+  }
+  for (Part& part : this->Parts)
+  {
+    if (!part.Search.IsDone())
+    {
+      part.Search.Take(
+        Discrepancy(this->Inputs.Surface.Mesh(), this->Compared, predicted, part.Vertices));
+    }
+  }
+}
+
+void ColumnSearch::WarnIfNotFound(Notes& notes) const
+{
+  const double unit = this->Inputs.Units.ValueUnit;
+  for (const Part& part : this->Parts)
+  {
+    const FidelityChoice found = part.Search.Found();
+    if (!found.IsFound)
+    {
+      notes.Add(Notes::NotFound,
+        Sentence(Word::Setting("AutomaticFidelity"))
+          << " found no weight at which the result differs from the data by the noise, "
+          << part.Noise * unit << ": at the end of its search the difference is "
+          << found.Discrepancy * unit);
+    }
+  }
+}
+
+} // namespace
+
+std::unique_ptr<Model> FidelityWeights::MakeModels(
+  PointData data, const FidelityModelMaker& makeModel) const
+{
+  const auto groups = static_cast<Eigen::Index>(this->OfColumns.size());
+  std::vector<std::unique_ptr<Model>> models;
+  for (Eigen::Index g = 0; g < groups; ++g)
+  {
+    PointData some = groups > 1 ? DataOfColumns(data, g, 1) : std::move(data);
+    if (this->Factors.rows() > 0)
+    {
+      MultiplyFactors(some, this->Factors.col(g));
+    }
+    models.push_back(makeModel(std::move(some), this->OfColumns[static_cast<std::size_t>(g)]));
+  }
+  return groups > 1 ? std::make_unique<ColumnModels>(std::move(models)) : std::move(models.front());
+}
+
+FidelityWeights FindFidelity(const ModelInputs& inputs, const FidelityTask& given,
+  const FidelityModelMaker& makeModel, RunResult& result)
+{
+  FidelityTask task = given;
+  if (inputs.Cells && task.NoiseLevel == 0.0)
+  {
+    task.CellNoiseGain = FindCellNoiseGain(inputs);
+  }
+  const Eigen::Index all = inputs.Data.Given.cols();
+  const Eigen::Index together = task.ColumnsShareWeight ? all : 1;
+  Notes notes;
+  FidelityWeights weights;
+  for (Eigen::Index first = 0; first < all; first += together)
+  {
+    ColumnSearch search(inputs, task, DataOfColumns(inputs.Data, first, together), notes);
+    while (!search.IsDone())
+    {
+      search.Advance(makeModel);
+    }
+    search.WarnIfNotFound(notes);
+    weights.OfColumns.push_back(search.Weight());
+    const Vector factors = search.Factors();
+    if (factors.size() > 0)
+    {
+      weights.Factors.conservativeResize(factors.size(), weights.Factors.cols() + 1);
+      weights.Factors.rightCols(1) = factors;
+    }
+  }
+  if (weights.Factors.rows() > 0)
+  {
+    result.FidelityFactors = weights.Factors.col(0);
+  }
+  notes.AppendTo(result);
+  return weights;
+}
+
+} // namespace SurfaceDiffusion
