@@ -18,7 +18,7 @@ using namespace SurfaceDiffusion::Testing;
 namespace
 {
 
-std::shared_ptr<const TriangleMesh> SphereWithBumps(const benchmark::State& state)
+std::shared_ptr<const TriangleMesh> SphereWithBumps(benchmark::State& state)
 {
   Surface s = Icosphere(static_cast<int>(state.range(0)));
   for (Index i = 0; i < s.NumberOfVertices(); ++i)
@@ -27,6 +27,7 @@ std::shared_ptr<const TriangleMesh> SphereWithBumps(const benchmark::State& stat
     s.Vertices.row(i) *=
       1.0 + 0.15 * std::sin(6.5 * x[0]) * std::sin(6.0 * x[1] + 1.0) * std::cos(4.0 * x[2]);
   }
+  state.counters["vertices"] = static_cast<double>(s.NumberOfVertices());
   return std::make_shared<TriangleMesh>(s.Vertices, s.Faces);
 }
 

@@ -41,7 +41,7 @@ STAGES = {
     "Filter100Steps": "the same in the filter",
     "TimeSeek": "seek to another time of that run",
 }
-MODELS = ("MinimizeToGap|MinimizeAllData|FlowOfSteps|PaperSteps|SegmentToGap|DenoiseColors/s:6|DeblurBy.*/s:6|FindEdges|"
+MODELS = ("FindExactDistances|MarchDistances|MinimizeToGap|MinimizeAllData|FlowOfSteps|PaperSteps|SegmentToGap|DenoiseColors/s:6|DeblurBy.*/s:6|FindEdges|"
           "ExtractCurves|LaggedStep/.*:3$|ChannelStep|TenSteps/[56]/[12]/1|^Step/mesh:[13]|"
           "Stands/mesh:[13]")
 PRECISION = {

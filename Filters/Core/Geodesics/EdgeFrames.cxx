@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -127,8 +128,7 @@ Index EdgeFrames::NextCorner(Index corner, bool& right) const
   }
   const auto edge = static_cast<Index>(behind >> 1);
   const bool atBegin = right == ((behind & 1u) != 0);
-  right = atBegin;
-  // If the vertex is at the begin of the edge, this leads to the left of the corner there.
+  right = atBegin; // the edge is then the left one of the corner there
   return edge - edge % 3 + (edge + (atBegin ? 1 : 2)) % 3;
 }
 

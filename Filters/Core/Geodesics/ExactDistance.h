@@ -22,8 +22,9 @@ namespace SurfaceDiffusion
 /// ACM Trans. Graph. 28, 2009), so that only windows beside the front are in memory.
 ///
 /// Nothing lies behind an edge of one triangle. Over an edge of three or more triangles, ways go into
-/// each of the others. Distances have an error of some 1e-14 of the largest; the distance from i to j
-/// is that from j to i within that. On a surface of n even triangles there are about n^1.5 / 6 windows.
+/// each of the others. Distances have an error of some 1e-14 of the largest, among needles up to some
+/// 1e-11; the distance from i to j is that from j to i within that. On a surface of n even triangles
+/// there are about n^1.5 / 6 windows.
 ///
 /// The mesh may be an intrinsic triangulation whose triangles have a vertex twice, but an edge must
 /// not have the same vertex at both ends.

@@ -45,6 +45,14 @@ struct GeodesicWindow
     return std::min(this->AtBegin, this->AtEnd);
   }
 
+  /// Whether ways by an end of the edge, where the times are known, are shorter everywhere in the
+  /// window by more than a margin.
+  bool IsLongerThanBy(double length, double atBegin, double atEnd, double margin) const
+  {
+    return atBegin + this->End < this->AtEnd - margin ||
+      atEnd + (length - this->Begin) < this->AtBegin - margin;
+  }
+
   /// The same window with the edge, of the given length, run through from its other end.
   void Mirror(double length)
   {

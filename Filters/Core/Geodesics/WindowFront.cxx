@@ -15,15 +15,6 @@ namespace
 using Window = GeodesicWindow;
 
 constexpr double Never = std::numeric_limits<double>::infinity();
-const double Pi = std::acos(-1.0);
-
-/// Whether ways by an end of the edge are shorter everywhere in a window.
-bool IsUseless(
-  const Window& window, double length, double timeAtBegin, double timeAtEnd, double margin)
-{
-  return timeAtBegin + window.End < window.AtEnd - margin ||
-    timeAtEnd + (length - window.Begin) < window.AtBegin - margin;
-}
 
 /// Whether the apex lies beside a window by no more than round-off. atEnd: the distance at the end
 /// of the window there. beside: the vector product of the way through that end with the vector from
@@ -55,12 +46,12 @@ WindowFront::WindowFront(const TriangleMesh& mesh, const EdgeFrames& frames, dou
 {
 }
 
-bool WindowFront::Reach(Index vertex, double time, Index source, const Incoming& incoming)
+void WindowFront::Reach(Index vertex, double time, Index source, const Incoming& incoming)
 {
   const auto v = static_cast<std::size_t>(vertex);
   if (!(time < this->Times[v]) || time > this->Cutoff)
   {
-    return false;
+    return;
   }
   this->NumberReached += this->Times[v] == Never;
   this->Times[v] = time;
@@ -70,7 +61,6 @@ bool WindowFront::Reach(Index vertex, double time, Index source, const Incoming&
   {
     this->Queue.emplace(time, -1 - vertex);
   }
-  return true;
 }
 
 void WindowFront::GoOver(Index edge, bool reversed, std::uint32_t behind, const Window& window)
@@ -153,8 +143,7 @@ void WindowFront::Run(const ProgressMonitor& progress)
       progress.Report(
         static_cast<double>(this->NumberReached) / static_cast<double>(this->Times.size()));
     }
-    windows.swap(
-      this->Pool[static_cast<std::size_t>(place)].Windows); // an empty list for a full one
+    windows.swap(this->Pool[static_cast<std::size_t>(place)].Windows); // empty ones for these
     this->WaitingAt[static_cast<std::size_t>(edge)] = -1;
     this->Free.push_back(place);
     this->CrossTriangle(edge, windows);
@@ -188,7 +177,7 @@ void WindowFront::CrossTriangle(Index edge, std::vector<Window>& windows)
   bool byBegin = false, byEnd = false;
   const auto useless = [&](const Window& w)
   {
-    if (IsUseless(w, frame.Length, atBegin, atEnd, margin))
+    if (w.IsLongerThanBy(frame.Length, atBegin, atEnd, margin))
     {
       return true;
     }
@@ -298,7 +287,7 @@ void WindowFront::CrossCorner(
   next.AtEnd = seesApex ? atApex : next.At(next.End);
   const double atBegin = this->TimeAt(CornerAfter(edge, left ? 1 : 2)), atEnd = this->TimeAt(edge);
   const double margin = 2e-14 * (next.AtBegin + frame.Length);
-  if (IsUseless(next, length, atBegin, atEnd, margin))
+  if (next.IsLongerThanBy(length, atBegin, atEnd, margin))
   {
     return;
   }
@@ -319,104 +308,6 @@ void WindowFront::CrossCorner(
   else
   {
     this->GoOver(CornerAfter(edge, 1), false, frame.BehindRight, next);
-  }
-}
-
-void WindowFront::LeaveCorner(Index corner, double from, double to, double start, Index source)
-{
-  const EdgeFrames::Frame& frame = this->Frames[corner];
-  const double angle = this->Frames.Angle(corner);
-  // Seen from the corner at (X, Y), the angle from the edge to the begin
-  const auto meet = [&](double turn)
-  {
-    const double c = std::cos(turn), s = std::sin(turn);
-    const double x = -frame.X * c + frame.Y * s, y = -frame.X * s - frame.Y * c;
-    return y < 0.0 ? std::clamp(frame.X - x * frame.Y / y, 0.0, frame.Length) : frame.Length;
-  };
-  Window w;
-  w.Begin = from > 0.0 ? meet(from) : 0.0;
-  w.End = to < angle ? meet(to) : frame.Length;
-  w.X = frame.X;
-  w.Y = -frame.Y;
-  w.Start = start;
-  w.Source = source;
-  w.IsStrip = false;
-  w.IsPast = false;
-  w.AtBegin = w.At(w.Begin);
-  w.AtEnd = w.At(w.End);
-  const double margin = 2e-14 * (w.AtBegin + frame.Length);
-  if (w.End > w.Begin &&
-    !IsUseless(w, frame.Length, this->TimeAt(CornerAfter(corner, 1)),
-      this->TimeAt(CornerAfter(corner, 2)), margin))
-  {
-    this->GoOver(corner, false, this->Frames.Behind(corner), w);
-  }
-}
-
-void WindowFront::LeaveEverywhere(Index vertex)
-{
-  Incoming& way = this->Ways[static_cast<std::size_t>(vertex)];
-  if (way.Corner >= 0 && this->Frames.PassingAt(vertex) != EdgeFrames::Passing::All)
-  {
-    way.Corner = -1;
-    this->Queue.emplace(this->Times[static_cast<std::size_t>(vertex)], -1 - vertex);
-  }
-}
-
-void WindowFront::LeaveVertex(Index vertex)
-{
-  const auto v = static_cast<std::size_t>(vertex);
-  const double start = this->Times[v];
-  const Index source = this->Sources[v];
-  const Incoming way = this->Ways[v];
-  const auto reachAlong = [&](Index corner)
-  {
-    const EdgeFrames::Frame& frame = this->Frames[corner];
-    const Index first = CornerAfter(corner, 1), second = CornerAfter(corner, 2);
-    const Index* const vertices = this->Mesh.TriangleVertices().data();
-    this->Reach(
-      vertices[first], start + frame.LeftLength, source, { first, this->Frames.Angle(first) });
-    this->Reach(vertices[second], start + frame.RightLength, source, { second, 0.0 });
-  };
-  if (way.Corner < 0 || this->Frames.PassingAt(vertex) == EdgeFrames::Passing::All)
-  {
-    for (Index k = this->Mesh.VertexCornersBegin()[v]; k < this->Mesh.VertexCornersBegin()[v + 1];
-         ++k)
-    {
-      const Index corner = this->Mesh.VertexCorners()[static_cast<std::size_t>(k)];
-      reachAlong(corner);
-      this->LeaveCorner(corner, 0.0, this->Frames.Angle(corner), start, source);
-    }
-    return;
-  }
-  // Ways go on where both sides have at least the angle pi
-  constexpr double tolerance = 1e-10;
-  const bool closed = this->Frames.IsClosed(vertex);
-  const double begin = Pi - tolerance;
-  const double end = closed ? this->Frames.TotalAngle(vertex) - Pi + tolerance : Never;
-  for (const bool side : { true, false })
-  {
-    bool right = side;
-    Index corner = way.Corner;
-    double before = right ? -way.Angle : way.Angle - this->Frames.Angle(corner);
-    while (corner >= 0 && before < end)
-    {
-      const double angle = this->Frames.Angle(corner);
-      if (before + angle > begin)
-      {
-        reachAlong(corner);
-        const double from = std::max(0.0, begin - before), to = std::min(angle, end - before);
-        // Angles are measured from the side that this corner is entered by
-        this->LeaveCorner(
-          corner, right ? from : angle - to, right ? to : angle - from, start, source);
-      }
-      before += angle;
-      corner = this->Frames.NextCorner(corner, right);
-    }
-    if (closed)
-    {
-      break;
-    }
   }
 }
 

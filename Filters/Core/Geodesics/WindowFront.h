@@ -7,6 +7,8 @@
 #include "Core/Geodesics/GeodesicWindow.h"
 #include "Core/Geodesics/SourcePiece.h"
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <queue>
 #include <unordered_map>
@@ -53,8 +55,8 @@ private:
   void AddStrips(const SourcePiece& piece, Index source);
   /// A way to a corner of a triangle from a place in the frame of the edge that begins there.
   void ReachFrom(Index corner, const Eigen::Vector2d& place, Index source);
-  /// A way to a vertex. Returns whether it is shorter than those known.
-  bool Reach(Index vertex, double time, Index source, const Incoming& incoming);
+  /// A way to a vertex, if it is shorter than those known.
+  void Reach(Index vertex, double time, Index source, const Incoming& incoming);
   /// Ways from a vertex in all directions, whatever way leads there.
   void LeaveEverywhere(Index vertex);
   void LeaveVertex(Index vertex);

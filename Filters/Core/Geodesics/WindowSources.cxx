@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace SurfaceDiffusion
 {
@@ -15,6 +16,9 @@ namespace
 
 using Window = GeodesicWindow;
 using Eigen::Vector2d;
+
+constexpr double Never = std::numeric_limits<double>::infinity();
+const double Pi = std::acos(-1.0);
 
 /// Points nearer to a vertex than this part of the shortest edge there are at the vertex.
 constexpr double AtVertex = 1e-12;
@@ -152,6 +156,104 @@ void WindowFront::AddStrips(const SourcePiece& piece, Index source)
     if (w.End > w.Begin)
     {
       this->GoOver(edge, false, this->Frames.Behind(edge), w);
+    }
+  }
+}
+
+void WindowFront::LeaveCorner(Index corner, double from, double to, double start, Index source)
+{
+  const EdgeFrames::Frame& frame = this->Frames[corner];
+  const double angle = this->Frames.Angle(corner);
+  // Seen from the corner at (X, Y), the angle from the edge to the begin
+  const auto meet = [&](double turn)
+  {
+    const double c = std::cos(turn), s = std::sin(turn);
+    const double x = -frame.X * c + frame.Y * s, y = -frame.X * s - frame.Y * c;
+    return y < 0.0 ? std::clamp(frame.X - x * frame.Y / y, 0.0, frame.Length) : frame.Length;
+  };
+  Window w;
+  w.Begin = from > 0.0 ? meet(from) : 0.0;
+  w.End = to < angle ? meet(to) : frame.Length;
+  w.X = frame.X;
+  w.Y = -frame.Y;
+  w.Start = start;
+  w.Source = source;
+  w.IsStrip = false;
+  w.IsPast = false;
+  w.AtBegin = w.At(w.Begin);
+  w.AtEnd = w.At(w.End);
+  const double margin = 2e-14 * (w.AtBegin + frame.Length);
+  if (w.End > w.Begin &&
+    !w.IsLongerThanBy(frame.Length, this->TimeAt(CornerAfter(corner, 1)),
+      this->TimeAt(CornerAfter(corner, 2)), margin))
+  {
+    this->GoOver(corner, false, this->Frames.Behind(corner), w);
+  }
+}
+
+void WindowFront::LeaveEverywhere(Index vertex)
+{
+  Incoming& way = this->Ways[static_cast<std::size_t>(vertex)];
+  if (way.Corner >= 0 && this->Frames.PassingAt(vertex) != EdgeFrames::Passing::All)
+  {
+    way.Corner = -1;
+    this->Queue.emplace(this->Times[static_cast<std::size_t>(vertex)], -1 - vertex);
+  }
+}
+
+void WindowFront::LeaveVertex(Index vertex)
+{
+  const auto v = static_cast<std::size_t>(vertex);
+  const double start = this->Times[v];
+  const Index source = this->Sources[v];
+  const Incoming way = this->Ways[v];
+  const auto reachAlong = [&](Index corner)
+  {
+    const EdgeFrames::Frame& frame = this->Frames[corner];
+    const Index first = CornerAfter(corner, 1), second = CornerAfter(corner, 2);
+    const Index* const vertices = this->Mesh.TriangleVertices().data();
+    this->Reach(
+      vertices[first], start + frame.LeftLength, source, { first, this->Frames.Angle(first) });
+    this->Reach(vertices[second], start + frame.RightLength, source, { second, 0.0 });
+  };
+  if (way.Corner < 0 || this->Frames.PassingAt(vertex) == EdgeFrames::Passing::All)
+  {
+    for (Index k = this->Mesh.VertexCornersBegin()[v]; k < this->Mesh.VertexCornersBegin()[v + 1];
+         ++k)
+    {
+      const Index corner = this->Mesh.VertexCorners()[static_cast<std::size_t>(k)];
+      reachAlong(corner);
+      this->LeaveCorner(corner, 0.0, this->Frames.Angle(corner), start, source);
+    }
+    return;
+  }
+  // Ways go on where both sides have at least the angle pi
+  constexpr double tolerance = 1e-10;
+  const bool closed = this->Frames.IsClosed(vertex);
+  const double begin = Pi - tolerance;
+  const double end = closed ? this->Frames.TotalAngle(vertex) - Pi + tolerance : Never;
+  for (const bool side : { true, false })
+  {
+    bool right = side;
+    Index corner = way.Corner;
+    double before = right ? -way.Angle : way.Angle - this->Frames.Angle(corner);
+    while (corner >= 0 && before < end)
+    {
+      const double angle = this->Frames.Angle(corner);
+      if (before + angle > begin)
+      {
+        reachAlong(corner);
+        const double from = std::max(0.0, begin - before), to = std::min(angle, end - before);
+        // Angles are measured from the side that this corner is entered by
+        this->LeaveCorner(
+          corner, right ? from : angle - to, right ? to : angle - from, start, source);
+      }
+      before += angle;
+      corner = this->Frames.NextCorner(corner, right);
+    }
+    if (closed)
+    {
+      break;
     }
   }
 }
