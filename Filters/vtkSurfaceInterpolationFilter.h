@@ -42,13 +42,13 @@
  * not used.
  *
  * **Smoothing.** Exact holds the values. Otherwise mu, the strength of the smoothing, is found for
- * each component of the values on each connected part of the surface, by generalised cross-validation (P. Craven, G. Wahba, Numer. Math. 31, 1979) or,
- * with a NoiseLevel, by the unbiased estimate of the risk (C. Mallows, Technometrics 15, 1973). Up
- * to 300 values are decomposed; with more, traces are those of random vectors of signs
- * (RandomSeed). Of few values cross-validation often takes noise for signal: if up to 300 values
- * would be all but held, mu is at least that with the greatest restricted likelihood (G. Wahba,
- * Ann. Statist. 13, 1985). Fewer than three places with values are held. Connected parts have nothing
- * to do with each other: each has its own mu and s.
+ * each component of the values on each connected part of the surface, by generalised
+ * cross-validation (P. Craven, G. Wahba, Numer. Math. 31, 1979) or, with a NoiseLevel, by the
+ * unbiased estimate of the risk (C. Mallows, Technometrics 15, 1973). Up to 300 values are
+ * decomposed; with more, traces follow from determinants. Of few values cross-validation often
+ * takes noise for signal: if up to 300 values would be all but held, mu is at least that with the
+ * greatest restricted likelihood (G. Wahba, Ann. Statist. 13, 1985). Fewer than three places with
+ * values are held. Connected parts have nothing to do with each other: each has its own mu and s.
  *
  * **The mean.** With CorrelationLength 0, constants have no energy. With CorrelationLength 1/kappa,
  * values are measured from their weighted mean, to which u returns beyond that distance from the

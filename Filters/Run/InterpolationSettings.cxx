@@ -236,7 +236,6 @@ ModelTraits InterpolationSettings::DescribeModel() const
   traits.UsesKnownValues = true;
   traits.MaximumDistance = this->MaximumDistance;
   traits.NeedsDirections = this->IsDirected();
-  traits.UsesRandomNumbers = !this->Exact;
   traits.StartsFromKnownValues = true;
   traits.ResultOnCells = this->ResultOnCells;
   traits.KeepCellDetail = false;
@@ -258,7 +257,6 @@ SmoothInterpolation::Settings InterpolationSettings::MakeCoreSettings(const Unit
   settings.NoiseLevel = this->NoiseLevel / units.ValueUnit;
   settings.KeepRange = this->KeepRange;
   settings.ComputeError = this->ComputeError;
-  settings.Seed = this->RandomSeed;
   return settings;
 }
 

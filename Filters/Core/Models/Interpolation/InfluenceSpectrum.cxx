@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/InfluenceSpectrum.h"
 
-#include "Core/Foundation/Random.h"
-
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -34,8 +32,9 @@ double Left(double s, double ratio)
 } // namespace
 
 InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues& data,
-  std::int64_t seed, bool onlyHere, const ProgressMonitor& progress)
+  const Determinant& other, const ProgressMonitor& progress)
   : IsExact(data.Count() <= FewValues)
+  , KnowsTrace(other.Mu > 0.0)
   , Mu(fit.GetSmoothing())
   , Count(data.Count())
 {
@@ -44,8 +43,61 @@ InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues
     this->Decompose(fit, data, progress);
     return;
   }
-  constexpr int steps = 10;
-  this->Sample(fit, data, seed, onlyHere ? 1 : steps, progress);
+  this->Own = { this->Mu, fit.LogDeterminant() };
+  this->ModelTrace(fit, other);
+  this->Sample(fit, data, progress);
+}
+
+/// The trace as that of eigenvalues a/(1 + a), a = (1/j^2 + 3/count^2)/c, j = 1, 2, .., of the energy of
+/// fourth order on a surface (H. Weyl, Math. Ann. 71, 1912), with what frequencies that the values do not
+/// resolve add to them, and a 1 of constants. c follows from the mean of the trace between this mu and
+/// the other one.
+void InfluenceSpectrum::ModelTrace(const SmoothFit& fit, const Determinant& other)
+{
+  constexpr double unresolved = 3.0;
+  const double width = this->KnowsTrace ? std::log(other.Mu / this->Mu) : 0.0;
+  // Values at the distance d of each other smooth over 3 d if c = (36 pi / count)^2, and the sum of
+  // 1/(1 + c j^2) is near pi/2 / sqrt(c).
+  const double found = this->KnowsTrace
+    ? fit.NumberOfRows() - (other.Logarithm - this->Own.Logarithm) / width
+    : 1.0 + this->Count / 72.0;
+  const double mean =
+    std::min(0.999 * this->Count, std::max(0.0, found)); // whatever round-off does
+  std::vector<std::pair<double, double>> groups; // c a, and how many there are
+  for (Index begin = 1, end = 1; begin < this->Count; begin = end)
+  {
+    end = std::min(this->Count, begin + 1 + begin / 32);
+    const double middle = 0.5 * (begin + end - 1);
+    groups.emplace_back(
+      1.0 / (middle * middle) + unresolved / (static_cast<double>(this->Count) * this->Count),
+      end - begin);
+  }
+  const double constants = std::min(1.0, mean);
+  const auto excess = [&](double c)
+  {
+    double sum = constants - mean;
+    for (const auto& [size, number] : groups)
+    {
+      const double a = size / c;
+      sum += number *
+        (this->KnowsTrace ? 1.0 - std::log((a + std::exp(width)) / (a + 1.0)) / width
+                          : a / (1.0 + a));
+    }
+    return sum;
+  };
+  double low = -60.0; // of the logarithm of c
+  double high = 60.0;
+  for (int i = 0; i < 80; ++i)
+  {
+    const double middle = 0.5 * (low + high);
+    (excess(std::exp(middle)) > 0.0 ? low : high) = middle;
+  }
+  for (const auto& [size, number] : groups)
+  {
+    const double a = size / std::exp(low);
+    this->Trace.emplace_back(a / (1.0 + a), number);
+  }
+  this->Trace.emplace_back(constants, 1.0);
 }
 
 void InfluenceSpectrum::Decompose(
@@ -144,41 +196,20 @@ std::vector<InfluenceSpectrum::Measure> InfluenceSpectrum::MeasuresOf(
   return measures;
 }
 
-void InfluenceSpectrum::Sample(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed,
-  int steps, const ProgressMonitor& progress)
+void InfluenceSpectrum::Sample(
+  const SmoothFit& fit, const ScatteredValues& data, const ProgressMonitor& progress)
 {
-  constexpr Eigen::Index probes = 15; // and one column of the data
+  constexpr int steps = 8;
   constexpr Eigen::Index panel = 16;
-  const auto all = static_cast<double>(probes + data.Given.cols());
-  const auto part = [&](Eigen::Index begin, Eigen::Index end)
-  { return progress.Part(static_cast<double>(begin) / all, static_cast<double>(end) / all); };
+  const auto all = static_cast<double>(data.Given.cols());
   const Vector roots = data.Weights.cwiseSqrt();
-  Values first(this->Count, probes + 1);
-  for (Index i = 0; i < this->Count; ++i)
-  {
-    first(i, probes) = roots[i] * data.Given(i, 0);
-    for (Eigen::Index p = 0; p < probes; ++p)
-    {
-      first(i, p) = UniformRandom(seed, p, i) < 0.5 ? -1.0 : 1.0;
-    }
-  }
-  std::vector<Measure> measures =
-    MeasuresOf(fit, roots, std::move(first), steps, part(0, probes + 1));
-  this->Columns.push_back(std::move(measures.back()));
-  measures.pop_back();
-  for (const Measure& measure : measures)
-  {
-    for (const auto& [share, weight] : measure)
-    {
-      this->Trace.emplace_back(share, weight / static_cast<double>(probes));
-    }
-  }
-  for (Eigen::Index c = 1; c < data.Given.cols(); c += panel)
+  for (Eigen::Index c = 0; c < data.Given.cols(); c += panel)
   {
     const Eigen::Index columns = std::min(panel, data.Given.cols() - c);
-    const Values further = roots.asDiagonal() * data.Given.middleCols(c, columns);
-    for (Measure& measure :
-      MeasuresOf(fit, roots, further, steps, part(probes + c, probes + c + columns)))
+    const Values given = roots.asDiagonal() * data.Given.middleCols(c, columns);
+    const ProgressMonitor part = progress.Part(
+      0.5 + 0.5 * static_cast<double>(c) / all, 0.5 + 0.5 * static_cast<double>(c + columns) / all);
+    for (Measure& measure : MeasuresOf(fit, roots, given, steps, part))
     {
       this->Columns.push_back(std::move(measure));
     }
@@ -242,7 +273,7 @@ double InfluenceSpectrum::Minimiser(Criterion criterion, Eigen::Index column, do
   // The range in which degrees of freedom change, as far as it is resolved.
   constexpr double margin = 4.6; // a factor of 100
   constexpr double farthest = 40.0;
-  constexpr double nearest = 4.6;
+  constexpr double nearest = 2.3; // a factor of 10, over which the residual is resolved
   double low = 0.0;
   double high = 0.0;
   for (const auto& [share, weight] : this->Trace)
@@ -257,15 +288,24 @@ double InfluenceSpectrum::Minimiser(Criterion criterion, Eigen::Index column, do
   low = std::max(this->IsExact ? low - margin : -nearest, -farthest);
   high = std::min(this->IsExact ? high + margin : nearest, farthest);
   constexpr int intervals = 200;
-  double best = low;
-  for (int i = 1; i <= intervals; ++i)
+  double best = this->IsExact ? low : 0.0;
+  for (int i = 1; i <= intervals && this->IsExact; ++i)
   {
     const double x = low + (high - low) * i / intervals;
     best = cost(x) < cost(best) ? x : best;
   }
-  const double width = (high - low) / intervals;
-  double left = std::max(low, best - width);
-  double right = std::min(high, best + width);
+  // Far from mu_0 the measures of many values are rough: downhill from it.
+  const double step = (high - low) / intervals;
+  for (const double way : { step, -step })
+  {
+    while (
+      !this->IsExact && best + way >= low && best + way <= high && cost(best + way) < cost(best))
+    {
+      best += way;
+    }
+  }
+  double left = std::max(low, best - step);
+  double right = std::min(high, best + step);
   // The minimum is where the slope changes its sign, which is sharper than the least value.
   for (int i = 0; i < 60; ++i)
   {

@@ -4,7 +4,6 @@
 
 #include "Core/Models/Interpolation/SmoothFit.h"
 
-#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -16,17 +15,29 @@ namespace SurfaceDiffusion
 /// which takes the data to the fit at their points, at one mu_0. Those at mu are
 ///   s mu_0 / (s mu_0 + (1 - s) mu),
 /// so that sums of squares of residuals and degrees of freedom are known at every mu from one
-/// factorisation. With few values the matrix is computed and decomposed; with many, the measures of
-/// the data and of random vectors of signs are, by Lanczos' method (G. Golub, U. von Matt, J. Comput.
-/// Graph. Statist. 6, 1997).
+/// factorisation. With few values the matrix is computed and decomposed. With many, the measures of the
+/// data follow by Lanczos' method (G. Golub, U. von Matt, J. Comput. Graph. Statist. 6, 1997). The trace
+/// is the derivative of n log(mu) - log(det(H)) by log(mu), so that two factors give its mean between
+/// their mu exactly. Elsewhere it is that of eigenvalues in the proportions of an energy of fourth order
+/// with this mean, which holds near mu_0.
 class InfluenceSpectrum
 {
 public:
-  /// data: those of the fit, which is prepared with mu_0. seed: of the signs. onlyHere: the measures
-  /// are needed at mu_0 alone.
+  /// What a factor of H at one mu says of the trace at others, if there are many values.
+  struct Determinant
+  {
+    double Mu = 0.0; ///< 0: not known
+    double Logarithm = 0.0;
+  };
+
+  /// data: those of the fit, which is prepared with mu_0. other: of another mu near mu_0. Without it the
+  /// trace at mu_0 is guessed: mu_0 has to smooth over three times the distance of the values then.
   /// Throws Aborted.
-  InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed,
-    bool onlyHere = false, const ProgressMonitor& progress = ProgressMonitor());
+  InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues& data, const Determinant& other,
+    const ProgressMonitor& progress = ProgressMonitor());
+
+  /// Of mu_0.
+  const Determinant& Known() const { return this->Own; }
 
   /// The trace of S at mu: the degrees of freedom of the fit.
   double DegreesOfFreedom(double mu) const;
@@ -55,7 +66,7 @@ public:
   /// Whether mu is so near to mu_0 that the measures resolve it.
   bool Resolves(double mu) const
   {
-    return this->IsExact || (mu < 30.0 * this->Mu && this->Mu < 30.0 * mu);
+    return this->IsExact || (this->KnowsTrace && mu < 1.2 * this->Mu && this->Mu < 1.2 * mu);
   }
 
   /// Let the fit, which is prepared with mu_0, take mu without another factorisation. Returns false,
@@ -81,12 +92,14 @@ private:
   double Minimiser(Criterion criterion, Eigen::Index column, double noise) const;
   static std::vector<Measure> MeasuresOf(const SmoothFit& fit, const Vector& roots, Values v,
     int steps, const ProgressMonitor& progress);
+  void ModelTrace(const SmoothFit& fit, const Determinant& other);
   void Decompose(
     const SmoothFit& fit, const ScatteredValues& data, const ProgressMonitor& progress);
-  void Sample(const SmoothFit& fit, const ScatteredValues& data, std::int64_t seed, int steps,
-    const ProgressMonitor& progress);
+  void Sample(const SmoothFit& fit, const ScatteredValues& data, const ProgressMonitor& progress);
 
   bool IsExact = false;
+  bool KnowsTrace;
+  Determinant Own;
   double Mu;
   Index Count;
   Eigen::MatrixXd Vectors; ///< of S, and its eigenvalues, if they are exact

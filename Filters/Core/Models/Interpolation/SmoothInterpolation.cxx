@@ -396,10 +396,11 @@ void SmoothInterpolation::FitSmoothly(
     this->Options.Smoothing == Choice::NoiseLevel ? this->Options.NoiseLevel : 0.0;
   const double largest = work.LargestSmoothing();
   const double givenMu = std::min(largest, this->Options.Mu);
-  const auto measure = [&](double mu, const ProgressMonitor& part)
+  const auto measure =
+    [&](double mu, const InfluenceSpectrum::Determinant& other, const ProgressMonitor& part)
   {
     this->Prepare(work, result, mu, work.None, part.Part(0.0, 0.5));
-    return InfluenceSpectrum(work.Fit, rows, this->Options.Seed, isGiven, part.Part(0.5, 1.0));
+    return InfluenceSpectrum(work.Fit, rows, other, part.Part(0.5, 1.0));
   };
   const auto take = [&](const InfluenceSpectrum& spectrum, double mu, Eigen::Index column)
   {
@@ -408,8 +409,14 @@ void SmoothInterpolation::FitSmoothly(
     found.Score = spectrum.Score(mu, column);
     found.DegreesOfFreedom = spectrum.DegreesOfFreedom(mu);
   };
-  const InfluenceSpectrum start = measure(
-    isGiven ? givenMu : std::min(largest, this->StartSmoothing(work)), progress.Part(0.0, 0.4));
+  constexpr double apart = 1.1; // between two mu whose determinants give the trace
+  const double startMu = isGiven ? givenMu : std::min(largest, this->StartSmoothing(work));
+  InfluenceSpectrum::Determinant none;
+  if (isGiven && rows.Count() > InfluenceSpectrum::FewValues)
+  {
+    none = measure(givenMu / apart, none, progress.Part(0.0, 0.2)).Known();
+  }
+  const InfluenceSpectrum start = measure(startMu, none, progress.Part(0.2, 0.4));
   if (isGiven)
   {
     for (Eigen::Index c = 0; c < columns; ++c)
@@ -446,11 +453,15 @@ void SmoothInterpolation::FitSmoothly(
   {
     double mu = std::min(largest, start.BestSmoothing(c, noise));
     take(start, mu, c);
-    constexpr int most = 3;
+    constexpr int most = 6;
     bool isResolved = start.Resolves(mu);
+    InfluenceSpectrum::Determinant last = start.Known();
     for (int again = 0; again < most && !isResolved; ++again)
     {
-      const InfluenceSpectrum nearer = measure(mu, progress.Part(at(0.0), at(0.5)));
+      const bool isNear = mu < apart * last.Mu && last.Mu < apart * mu;
+      const InfluenceSpectrum nearer = measure(isNear ? last.Mu / apart : mu, last,
+        progress.Part(at(0.5 * again / most), at(0.5 * (again + 1) / most)));
+      last = nearer.Known();
       mu = std::min(largest, nearer.BestSmoothing(c, noise));
       take(nearer, mu, c);
       isResolved = nearer.Resolves(mu);

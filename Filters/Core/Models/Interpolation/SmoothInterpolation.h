@@ -5,7 +5,6 @@
 #include "Core/Models/Interpolation/ScatteredValues.h"
 #include "Core/Models/Interpolation/SmoothnessEnergy.h"
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -56,7 +55,6 @@ public:
     double NoiseLevel = 0.0;
     bool KeepRange = false; ///< min d <= u <= max d in each column
     bool ComputeError = false;
-    std::int64_t Seed = 0; ///< of the random vectors of cross-validation with many values
   };
 
   /// What was found for a column of the data, over all components.
