@@ -167,6 +167,13 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
     }
   }
   const std::vector<double> areas = FindAreas(surface, fields);
+  std::vector<double> ofKnown;
+  for (const Index i : known)
+  {
+    ofKnown.push_back(areas[static_cast<std::size_t>(i)]);
+  }
+  constexpr double largest = 30.0; // in medians: a spike is not the surface that the others are not
+  const double bound = largest * Median(ofKnown);
   std::vector<AreaOfValue> column;
   for (Eigen::Index k = 0; k < values.cols(); ++k)
   {
@@ -175,7 +182,7 @@ void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inp
     for (const Index i : known)
     {
       bounds.Widen({ values(i, k), values(i, k) });
-      column.push_back({ values(i, k), areas[static_cast<std::size_t>(i)] });
+      column.push_back({ values(i, k), std::min(areas[static_cast<std::size_t>(i)], bound) });
     }
     Widen(this->All, static_cast<std::size_t>(k), bounds);
     Widen(this->Robust, static_cast<std::size_t>(k), BoundsOfMost(column));

@@ -138,6 +138,7 @@ TEST(DefaultUnits, ASpikeHardlyChangesTheRestAndIsOneWarning)
     const Values without = AtPoints(even, settings);
     EXPECT_LT(LargestDifference(even.Vertices, AtPoints(run, spiky, settings), without), bound);
     EXPECT_EQ(Count(run, "longer than 30 times the median edge"), 1);
+    EXPECT_EQ(run.FindWarnings(Alone).size(), 1u);
   };
   // What the spike changes nearby: it was .3 and more everywhere.
   compare(HeatSettings(), 0.1);
