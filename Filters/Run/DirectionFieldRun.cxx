@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -20,20 +21,29 @@ namespace
 /// The default of SmoothingLength, in mean edge lengths.
 constexpr double DefaultSmoothing = 4.0;
 
-/// The connected components without a line.
-Index CountZeroParts(const TriangleMesh& mesh, const TangentVectors& field)
+/// The connected components without a line, and their triangles.
+std::pair<Index, Index> CountZeroParts(const TriangleMesh& mesh, const TangentVectors& field)
 {
   const std::vector<Index>& begin = mesh.ComponentsBegin();
   std::vector<char> hasLine(static_cast<std::size_t>(mesh.NumberOfComponents()), 0);
+  const auto partOf = [&](Index t)
+  {
+    const auto end = std::upper_bound(begin.begin(), begin.end(), mesh.TriangleVertices()(t, 0));
+    return static_cast<std::size_t>(end - begin.begin() - 1);
+  };
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     if ((field.row(t).array() != 0.0).any())
     {
-      const auto end = std::upper_bound(begin.begin(), begin.end(), mesh.TriangleVertices()(t, 0));
-      hasLine[static_cast<std::size_t>(end - begin.begin() - 1)] = 1;
+      hasLine[partOf(t)] = 1;
     }
   }
-  return static_cast<Index>(std::count(hasLine.begin(), hasLine.end(), 0));
+  Index triangles = 0;
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    triangles += hasLine[partOf(t)] ? 0 : 1;
+  }
+  return { static_cast<Index>(std::count(hasLine.begin(), hasLine.end(), 0)), triangles };
 }
 
 double RadiansFromDegrees(double degrees)
@@ -153,10 +163,14 @@ void DirectionFieldRun::MakeField(
   this->WithoutDirection = static_cast<Index>((this->Field.array() == 0.0).rowwise().all().count());
   this->Method = settings.Method;
   this->Parts = mesh.NumberOfComponents();
-  this->PartsWithoutCurvature = settings.Method == DirectionMethod::PrincipalCurvature ||
-      settings.Method == DirectionMethod::CurvatureAligned
-    ? CountZeroParts(mesh, this->Field)
-    : 0;
+  this->PartsWithoutCurvature = 0;
+  if (settings.Method == DirectionMethod::PrincipalCurvature ||
+    settings.Method == DirectionMethod::CurvatureAligned)
+  {
+    const auto [parts, triangles] = CountZeroParts(mesh, this->Field);
+    this->PartsWithoutCurvature = parts;
+    this->WithoutDirection -= triangles;
+  }
 }
 
 std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
@@ -180,13 +194,13 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
       sentence = Sentence();
       sentence << this->PartsWithoutCurvature << " of " << this->Parts << " parts have";
     }
-    sentence << " no direction of curvature: flat, or of the size of "
-             << Word::Setting("SmoothingLength") << " (for a field there, set "
-             << Word::Setting("Method") << " to "
-             << Word::Choice("Method", DirectionMethod::Smooth, "Smooth") << ")";
+    sentence
+      << " no direction of curvature: flat, equally curved in all directions, or of the size of "
+      << Word::Setting("SmoothingLength") << " (for a field there, set " << Word::Setting("Method")
+      << " to " << Word::Choice("Method", DirectionMethod::Smooth, "Smooth") << ")";
     warnings.push_back({ sentence, inputs });
   }
-  else if (this->WithoutDirection > 0 && this->Method == DirectionMethod::PrincipalCurvature)
+  if (this->WithoutDirection > 0 && this->Method == DirectionMethod::PrincipalCurvature)
   {
     Sentence text;
     text << this->WithoutDirection << triangles

@@ -46,7 +46,7 @@ private:
   void RotateTurnedTriangles(double angle, TangentVectors& lines);
 
   TangentVectors Field; ///< before the rotation by Angle
-  Index WithoutDirection = 0; ///< triangles where it is 0
+  Index WithoutDirection = 0; ///< triangles where it is 0, but those of the parts below
   DirectionMethod Method = DirectionMethod::PrincipalCurvature; ///< of the field
   Index Parts = 0; ///< connected components
   Index PartsWithoutCurvature = 0; ///< whose field is 0 with the methods that follow it

@@ -46,7 +46,8 @@ DistanceRun::Matrix DistanceRun::FindEach(const BlockInput& input, Settings& giv
   {
     area += mesh.Shapes()[static_cast<std::size_t>(t)].Area();
   }
-  const double share = std::min(1.0, std::acos(-1.0) * reach * reach / area);
+  constexpr double ofSetUp = 0.01; // of the time of a whole surface, however near the cutoff is
+  const double share = std::clamp(std::acos(-1.0) * reach * reach / area, ofSetUp, 1.0);
   const bool isExact = this->FindMethod(settings.Method, !this->Shapes.empty(), share * count) ==
     DistanceMethod::Exact;
   const ExactDistance* const exact = isExact ? &this->TakeExact() : nullptr;

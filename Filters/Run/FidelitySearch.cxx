@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -26,12 +27,17 @@ constexpr double WeightWithoutNoise = 1e8;
 /// One column of the data, or all of them.
 PointData DataOfColumns(const PointData& data, Eigen::Index first, Eigen::Index count)
 {
-  PointData some = data;
-  if (count < data.Given.cols())
+  if (count == data.Given.cols())
   {
-    some.Given = data.Given.middleCols(first, count);
-    some.Start = data.Start.middleCols(first, count);
+    return data;
   }
+  PointData some;
+  some.Given = data.Given.middleCols(first, count);
+  some.Start = data.Start.middleCols(first, count);
+  some.Missing = data.Missing;
+  some.Fixed = data.Fixed;
+  some.FidelityFactors = data.FidelityFactors;
+  some.Measured = data.Measured;
   return some;
 }
 
@@ -106,6 +112,7 @@ private:
     DiscrepancySearch Search;
   };
 
+  bool HasComparedValues(VertexRange range) const;
   NoiseEstimate Estimate(VertexRange range, Notes& notes);
   double FindNoise(VertexRange range, Notes& notes);
   void LeaveOutConstantParts(VertexRange range);
@@ -117,6 +124,7 @@ private:
   const SparsePattern Pattern;
   std::vector<Part> Parts; ///< connected components
   std::size_t Largest = 0;
+  std::optional<NoiseEstimate> OfAll; ///< for components of too few points
   PointData Compared; ///< the measured data that the result has to differ from by the noise
 };
 
@@ -137,6 +145,11 @@ ColumnSearch::ColumnSearch(
   for (const std::size_t c : order)
   {
     const VertexRange range = rangeOf(c);
+    if (order.size() > 1 && !this->HasComparedValues(range))
+    {
+      this->Parts.push_back({ range, 0.0, DiscrepancySearch(task.Start) });
+      continue;
+    }
     const double noise = this->FindNoise(range, notes);
     this->Parts.push_back({ range, noise, { noise, task.Start } });
     if (noise > 0.0)
@@ -150,6 +163,19 @@ ColumnSearch::ColumnSearch(
   }
 }
 
+/// Whether a value of a weight other than 0 may change. Elsewhere all weights give the same.
+bool ColumnSearch::HasComparedValues(VertexRange range) const
+{
+  for (Index i = range.Begin; i < range.End; ++i)
+  {
+    if (!this->Data.Fixed[i] && this->Data.FidelityFactor(i) > 0.0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
 {
   const Assembler& assembler = *this->Inputs.Surface.SharedAssembler();
@@ -158,7 +184,11 @@ NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
   const VertexRange all{ 0, this->Inputs.Surface.Mesh().NumberOfVertices() };
   if (found.IsUndetermined && range.Size() < all.Size())
   {
-    found = EstimateNoise(assembler, this->Pattern, points, this->Data, all);
+    if (!this->OfAll)
+    {
+      this->OfAll = EstimateNoise(assembler, this->Pattern, points, this->Data, all);
+    }
+    found = *this->OfAll;
   }
   const double unit = this->Inputs.Units.ValueUnit;
   if (!this->Inputs.Cells && found.IsCorrelated())

@@ -168,6 +168,10 @@ ModelTraits MumfordShahSettings::DescribeModel() const
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FidelityWeight > 0.0;
   traits.EstimatesNoise = true; // also for a warning
+  if (!this->AutomaticThreshold)
+  {
+    traits.SettingsInRange = { "EdgeThreshold" };
+  }
   traits.CanBeDistributed = !this->EdgeCurves && !this->AutomaticThreshold;
   DescribeData(*this, traits);
   return traits;

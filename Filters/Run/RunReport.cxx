@@ -275,7 +275,8 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
   }
   const std::vector<const char*> inRange = this->Settings->DescribeModel().SettingsInRange;
   if (!inRange.empty() && !this->Settings->IsAbsolute() &&
-    this->WholeValueRange > OutlierFactor * this->RobustValueRange)
+    (this->WholeValueRange > OutlierFactor * this->RobustValueRange ||
+      this->CommonUnits.ValueRange < this->WholeValueRange))
   {
     warnings.push_back({ DescribeOutliers(this->CommonUnits.ValueRange, this->WholeValueRange,
                            this->RobustValueRange, inRange),

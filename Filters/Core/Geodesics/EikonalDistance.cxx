@@ -317,6 +317,10 @@ std::vector<std::pair<Index, double>> EikonalDistance::FindNear(
 {
   const Index source =
     this->FineVertices.empty() ? vertex : this->FineVertices[static_cast<std::size_t>(vertex)];
+  if (source < 0) // its triangles have no area
+  {
+    return { { vertex, 0.0 } };
+  }
   const std::vector<Index> touched =
     this->Fronts->FindNear({ { source, 0.0, 0, 0, 0.0 } }, cutoff, {}, memory);
   std::vector<std::pair<Index, double>> near;

@@ -52,7 +52,7 @@ Row3 TargetNormal(
   const Row3 axis = from.cross(to);
   const Row3 apart = n - from;
   const Row3 turned =
-    apart + axis.cross(apart) + axis.cross(axis.cross(apart)) / (1.0 + from.dot(to));
+    apart + axis.cross(apart) + axis.cross(axis.cross(apart)) / std::max(1.0 + from.dot(to), 1e-12);
   return (to + rest * turned).stableNormalized();
 }
 

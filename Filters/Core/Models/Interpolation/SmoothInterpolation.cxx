@@ -83,8 +83,7 @@ std::vector<ScatteredValues> ByComponent(const TriangleMesh& mesh, const Scatter
     const auto c = static_cast<std::size_t>(after - begin.begin()) - 1;
     for (std::size_t a = 0; a < 3; ++a)
     {
-      place.Vertices[a] =
-        (place.Coordinates[a] == 0.0 ? vertex : place.Vertices[a]) - begin[c];
+      place.Vertices[a] = (place.Coordinates[a] == 0.0 ? vertex : place.Vertices[a]) - begin[c];
     }
     parts[c].Places.push_back(place);
     rows[c].push_back(i);
@@ -206,8 +205,8 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
     }
     const Index begin = mesh.ComponentsBegin()[c];
     const Index size = mesh.ComponentsBegin()[c + 1] - begin;
-    const ProgressMonitor own = progress.Part(
-      static_cast<double>(begin) / n, static_cast<double>(begin + size) / n);
+    const ProgressMonitor own =
+      progress.Part(static_cast<double>(begin) / n, static_cast<double>(begin + size) / n);
     const Result part = size == n
       ? this->FitPart(rows, lowest, highest, own)
       : this->OfComponent(meshes, c).FitPart(rows, lowest, highest, own);
@@ -396,17 +395,18 @@ void SmoothInterpolation::FitSmoothly(
     this->Options.Smoothing == Choice::NoiseLevel ? this->Options.NoiseLevel : 0.0;
   const double largest = work.LargestSmoothing();
   const double givenMu = std::min(largest, this->Options.Mu);
-  const auto measure =
-    [&](double mu, const InfluenceSpectrum::Determinant& other, const ProgressMonitor& part)
+  const auto measure = [&](double mu, const InfluenceSpectrum::Determinant& other,
+                         const ScatteredValues& data, const ProgressMonitor& part)
   {
     this->Prepare(work, result, mu, work.None, part.Part(0.0, 0.5));
-    return InfluenceSpectrum(work.Fit, rows, other, part.Part(0.5, 1.0));
+    return InfluenceSpectrum(work.Fit, data, other, part.Part(0.5, 1.0));
   };
-  const auto take = [&](const InfluenceSpectrum& spectrum, double mu, Eigen::Index column)
+  const auto take =
+    [&](const InfluenceSpectrum& spectrum, double mu, Eigen::Index column, Eigen::Index measured)
   {
     Column& found = result.Columns[static_cast<std::size_t>(column)];
     found.Mu = mu;
-    found.Score = spectrum.Score(mu, column);
+    found.Score = spectrum.Score(mu, measured);
     found.DegreesOfFreedom = spectrum.DegreesOfFreedom(mu);
   };
   constexpr double apart = 1.1; // between two mu whose determinants give the trace
@@ -414,14 +414,14 @@ void SmoothInterpolation::FitSmoothly(
   InfluenceSpectrum::Determinant none;
   if (isGiven && rows.Count() > InfluenceSpectrum::FewValues)
   {
-    none = measure(givenMu / apart, none, progress.Part(0.0, 0.2)).Known();
+    none = measure(givenMu / apart, none, rows, progress.Part(0.0, 0.2)).Known();
   }
-  const InfluenceSpectrum start = measure(startMu, none, progress.Part(0.2, 0.4));
+  const InfluenceSpectrum start = measure(startMu, none, rows, progress.Part(0.2, 0.4));
   if (isGiven)
   {
     for (Eigen::Index c = 0; c < columns; ++c)
     {
-      take(start, givenMu, c);
+      take(start, givenMu, c, c);
     }
     this->FitColumns(work, result, 0, columns, givenMu, progress.Part(0.4, 1.0));
     return;
@@ -437,7 +437,7 @@ void SmoothInterpolation::FitSmoothly(
   for (Eigen::Index c = 0; c < columns; ++c)
   {
     const double mu = std::min(largest, start.BestSmoothing(c, noise));
-    take(start, mu, c);
+    take(start, mu, c, c);
     if (!needsFactor && start.Rescale(work.Fit, mu) &&
       this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.0), at(1.0))))
     {
@@ -452,18 +452,20 @@ void SmoothInterpolation::FitSmoothly(
   for (const Eigen::Index c : others)
   {
     double mu = std::min(largest, start.BestSmoothing(c, noise));
-    take(start, mu, c);
+    take(start, mu, c, c);
     constexpr int most = 6;
     bool isResolved = start.Resolves(mu);
     InfluenceSpectrum::Determinant last = start.Known();
+    ScatteredValues column = rows;
+    column.Given = rows.Given.col(c);
     for (int again = 0; again < most && !isResolved; ++again)
     {
       const bool isNear = mu < apart * last.Mu && last.Mu < apart * mu;
-      const InfluenceSpectrum nearer = measure(isNear ? last.Mu / apart : mu, last,
+      const InfluenceSpectrum nearer = measure(isNear ? last.Mu / apart : mu, last, column,
         progress.Part(at(0.5 * again / most), at(0.5 * (again + 1) / most)));
       last = nearer.Known();
-      mu = std::min(largest, nearer.BestSmoothing(c, noise));
-      take(nearer, mu, c);
+      mu = std::min(largest, nearer.BestSmoothing(0, noise));
+      take(nearer, mu, c, 0);
       isResolved = nearer.Resolves(mu);
     }
     this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.5), at(1.0)));
