@@ -44,7 +44,7 @@ std::string DiffusedArray(const FilterKind& kind)
 }
 
 /// Run without an error.
-vtkSmartPointer<vtkPolyDataAlgorithm> Run(const FilterKind& kind, vtkPolyData* surface)
+vtkSmartPointer<vtkPolyDataAlgorithm> RunKind(const FilterKind& kind, vtkPolyData* surface)
 {
   auto filter = kind.Make();
   FitHeights(filter, surface);
@@ -153,7 +153,7 @@ TEST(CoarseSurfaces, AreTakenByEveryKind)
   ForEachKind(CoarseSurfaces(),
     [](const FilterKind& kind, vtkPolyData* surface)
     {
-      const auto filter = Run(kind, surface);
+      const auto filter = RunKind(kind, surface);
       ExpectPromises(filter, surface, kind.Result);
     });
 }
@@ -183,7 +183,7 @@ TEST(CoarseSurfaces, KeepConstants)
           }
         }
       }
-      const auto filter = Run(kind, surface);
+      const auto filter = RunKind(kind, surface);
       vtkDataArray* const result = ResultOf(filter, kind.Result);
       ASSERT_NE(result, nullptr);
       for (int k = 0; k < result->GetNumberOfComponents(); ++k)
@@ -209,7 +209,7 @@ TEST(CoarseSurfaces, GiveTheSameTurned)
     for (const FilterKind& kind : AllFilters())
     {
       SCOPED_TRACE(kind.Name);
-      const auto a = Run(kind, given);
+      const auto a = RunKind(kind, given);
       vtkDataArray* const before = ResultOf(a, kind.Result);
       const bool isVector =
         before && before->GetNumberOfComponents() == 3 && std::string(kind.Result).find("rgb") != 0;
@@ -217,7 +217,7 @@ TEST(CoarseSurfaces, GiveTheSameTurned)
       {
         continue;
       }
-      const auto b = Run(kind, turned);
+      const auto b = RunKind(kind, turned);
       vtkDataArray* const after = ResultOf(b, kind.Result);
       double largest = 0.0;
       for (vtkIdType i = 0; i < before->GetNumberOfTuples(); ++i)
