@@ -62,7 +62,7 @@ double WaveNumber(const Trajectory& path, Eigen::Index column)
 TEST(CoarseSpace, KeepsConstantsBoundsAndIntegrals)
 {
   for (const Testing::Surface& surface : { Icosphere(4), ThreeFins(40),
-         Joined(Plate(40, 1.0), Moved(Tetrahedron(), { 9.0, 0.0, 0.0 })) })
+         Joined(Plate(40, 1.0), Moved(Scaled(Tetrahedron(), 0.4), { 9.0, 0.0, 0.0 })) })
   {
     const auto fine = MakeAssembler(surface);
     const auto space = MakeSpace(*fine, 16.0);
@@ -182,7 +182,7 @@ TEST(CoarseStart, HasTheNoiseOnTheSurfaceAsItsInitialState)
 
 TEST(CoarseStart, OnlyPatternsFromNoiseUntilStationaryStartCoarse)
 {
-  const Testing::Surface surface = Icosphere(4);
+  const Testing::Surface surface = Icosphere(5);
   const auto starts = [&](const TextureSettings& settings, const RunInput& input)
   {
     SurfaceDiffusion::Run run(SerialFor());

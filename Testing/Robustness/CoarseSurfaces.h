@@ -95,10 +95,10 @@ inline Surface Leaves(Index count)
 inline std::vector<NamedSurface> CoarseSurfaces()
 {
   std::vector<NamedSurface> surfaces = SmallCoarseSurfaces();
-  surfaces.push_back({ "ManyParts", Row(Icosphere(0), 2000) });
+  surfaces.push_back({ "ManyParts", Row(Icosphere(0), 500) });
   surfaces.push_back({ "PartsOfManySizes", Row(Icosphere(1), 4, 10.0) });
-  surfaces.push_back({ "Fan", Fan(20000) });
-  surfaces.push_back({ "Leaves", Leaves(20000) });
+  surfaces.push_back({ "Fan", Fan(2000) });
+  surfaces.push_back({ "Leaves", Leaves(2000) });
   return surfaces;
 }
 

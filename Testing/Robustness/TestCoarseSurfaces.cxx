@@ -161,7 +161,7 @@ TEST(CoarseSurfaces, AreTakenByEveryKind)
   ForEachKind(CoarseSurfaces(),
     [](const FilterKind& kind, vtkPolyData* surface)
     {
-      const bool hasHubs = surface->GetNumberOfCells() == 20000;
+      const bool hasHubs = surface->GetNumberOfCells() == 2000;
       if (const auto filter = RunKind(kind, surface, hasHubs))
       {
         ExpectPromises(filter, surface, kind.Result);
