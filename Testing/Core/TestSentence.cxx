@@ -98,8 +98,10 @@ TEST(Sentence, OfAFailureNamesOnlySettingsThatTheModelHas)
 TEST(Sentence, AboutTrianglesWithoutAreaSaysWhatBecomesOfThem)
 {
   const Testing::RunInput input = WithDegenerateTriangle();
-  EXPECT_EQ(DirectionField(input.Vertices, input.Faces).Warnings,
-    (std::vector<std::string>{ "1 triangles of zero area get no direction" }));
+  const std::vector<std::string> ofDirections =
+    DirectionField(input.Vertices, input.Faces).Warnings;
+  ASSERT_FALSE(ofDirections.empty());
+  EXPECT_EQ(ofDirections.back(), "1 triangles of zero area get no direction");
   const std::vector<std::string> warnings = DenoiseMesh(input.Vertices, input.Faces).Warnings;
   ASSERT_FALSE(warnings.empty());
   EXPECT_EQ(warnings.back(), "1 triangles of zero area have no normal");

@@ -87,7 +87,8 @@ ValueBounds BoundsOfMost(std::vector<AreaOfValue>& values)
     all.Widen({ value.Value, value.Value });
     total += value.Area;
   }
-  if (!(all.Width() > 0.0 && total > 0.0) || !MayHaveOutliers(values, all, total))
+  const bool isOrdered = std::isfinite(all.Width()) && all.Width() > 0.0 && total > 0.0;
+  if (!isOrdered || !MayHaveOutliers(values, all, total))
   {
     return all;
   }

@@ -44,7 +44,11 @@ Row3 TargetNormal(
   const Row3 mean = now.colwise().mean();
   const double spread = (old.rowwise() - oldMean).squaredNorm();
   const double change = (now - old).squaredNorm();
-  const double kept = change > 0.0 ? std::max(0.0, 1.0 - change / spread) : 1.0;
+  if (!(change > 0.0))
+  {
+    return n; // also where a vector was missing
+  }
+  const double kept = std::max(0.0, 1.0 - change / spread);
   const double rest = isKnown ? kept * kept : 0.0;
   const Row3 from = oldMean.stableNormalized();
   const Row3 to = mean.stableNormalized();
