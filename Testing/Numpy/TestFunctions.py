@@ -298,7 +298,8 @@ class Surfaces(unittest.TestCase):
         for method in ("PrincipalCurvature", "CurvatureAligned"):
             with self.assertWarnsRegex(
                     sd.SurfaceDiffusionWarning, "the surface has no direction of curvature: flat, "
-                    "or of the size of smoothing_length .*set method to Smooth"):
+                    "equally curved in all directions, or of the size of smoothing_length "
+                    ".*set method to Smooth"):
                 self.assertFalse(sd.direction_field(square, method=method).any())
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -625,7 +626,7 @@ class Warnings(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             for size, coarse in ((0, False), (100, True)):
-                result = sd.turing_texture(sd.sphere(4), coarse_start_size=size,
+                result = sd.turing_texture(sd.sphere(4), feature_size=0.8, coarse_start_size=size,
                                            number_of_time_steps=4)
                 self.assertEqual(0 < result.coarse_start_vertices < 1300, coarse)
 
