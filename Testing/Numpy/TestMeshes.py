@@ -85,14 +85,15 @@ class Seams(unittest.TestCase):
         soup = Surface(whole.points[whole.triangles].reshape(-1, 3),
                        np.arange(3 * whole.n_faces).reshape(-1, 3))
         z = soup.points[:, 2]
-        for call, what in ((lambda s: sd.eigenmodes(s, 2), "nothing flows"),
-                           (lambda s: sd.distance(s, [0]), "no way leads"),
-                           (lambda s: sd.nearest_sources(s, [0, 1]), "no way leads"),
-                           (lambda s: sd.random_field(s, 1, fwhm=0.5), "nothing flows"),
-                           (lambda s: sd.scale_filter(s, s.points[:, 2], 1.0), "nothing flows"),
-                           (lambda s: sd.spectrum(s, s.points[:, 2], [1.0]), "nothing flows")):
+        flow, path = " and nothing flows", ", across which no path leads"
+        for call, what in ((lambda s: sd.eigenmodes(s, 2), flow),
+                           (lambda s: sd.distance(s, [0]), path),
+                           (lambda s: sd.nearest_sources(s, [0, 1]), path),
+                           (lambda s: sd.random_field(s, 1, fwhm=0.5), flow),
+                           (lambda s: sd.scale_filter(s, s.points[:, 2], 1.0), flow),
+                           (lambda s: sd.spectrum(s, s.points[:, 2], [1.0]), flow)):
             with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
-                                       f"^{len(z)} boundary points coincide with others and {what}"):
+                                       f"^{len(z)} boundary points coincide with others{what}"):
                 call(soup)
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
@@ -107,17 +108,21 @@ class Seams(unittest.TestCase):
                            np.stack([corner, corner + 26, corner + 1], 1)])
         torus = Surface(points, faces)
         z = points[:, 2]
-        for call in (lambda s: sd.eigenmodes(s, 2), lambda s: sd.distance(s, [0]),
-                     lambda s: sd.random_field(s, 1, fwhm=0.5)):
+        for call in (lambda s: sd.eigenmodes(s, 2), lambda s: sd.random_field(s, 1, fwhm=0.5)):
             with self.assertWarnsRegex(sd.SurfaceDiffusionWarning,
                                        r"^96 boundary points coincide .* within \de-1\d of one another once"):
                 call(torus)
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, r"^96 boundary points coincide .* set "
+                                   r"merge_coincident_points, and merge_tolerance to \de-1\d\)"):
+            sd.distance(torus, [0])
         with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, r"and merge_tolerance to \de-1\d\)") as caught:
             apart = heat(torus, z, fwhm=2)
         tolerance = float(str(caught.warning).split(" to ")[-1].rstrip(")"))
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             joined = heat(torus, z, fwhm=2, merge_coincident_points=True, merge_tolerance=tolerance)
+            found = sd.distance(torus, [0], merge_coincident_points=True, merge_tolerance=tolerance)
+        np.testing.assert_array_equal(found.reshape(25, 25)[:, 0], found.reshape(25, 25)[:, -1])
         np.testing.assert_array_equal(joined.reshape(25, 25)[:, 0], joined.reshape(25, 25)[:, -1])
         self.assertGreater(np.abs(apart - joined).max(), 1e-3)
 
