@@ -70,13 +70,13 @@ def refine(arguments, report):
     colors, lost = surface.beside()
     if colors is not None and kind_of_export(arguments.output) not in ("obj", "off", "ply"):
         colors, lost = None, ["colours", *lost]
-    if lost:
-        report.warn(f"{arguments.output} has none of the {', '.join(lost)} of {surface.path}; --data takes data "
-                    "at the vertices along")
     with report.timed("write"):
         points = places_in_file(arguments.output, fine.surface.points, report.warn)
         export(arguments.output, points, fine.surface.triangles,
                None if colors is None else fine.at_points(colors))
+        if lost:
+            report.warn(f"{arguments.output} has none of the {', '.join(lost)} of {surface.path}; --data takes "
+                        "data at the vertices along")
         for (_, new), given_values in zip(arguments.data, columns):
             write_array(new, fine.at_points(given_values))
     report.say_written(arguments.output, f"{fine.surface.n_faces} triangles, edges of at most "

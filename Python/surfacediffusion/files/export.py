@@ -46,6 +46,7 @@ def places_in_file(path, points, say):
     points = np.asarray(points, dtype=float)
     if kind_of_export(path) != "stl":
         return points
+    check_range(path, "stl", [points], "coordinate")
     low, high = points.min(axis=0), points.max(axis=0)
     step = float(np.spacing(np.float32(np.abs([low, high]).max())))
     if step <= LARGEST_STEP * np.linalg.norm(high - low):
