@@ -244,7 +244,7 @@ CASES = [
     ("distance lh.surf.gii out.npy --from 99999", "--from is 99999; allowed: 0 to "),
     ("distance lh.surf.gii a.dscalar.nii out.npy", "a.dscalar.nii: data of 2 surfaces; allowed: of one"),
     ("distance lh.surf.gii right.func.gii out.npy", "data of CortexRight, but lh.surf.gii is of CortexLeft"),
-    ("distance lh.surf.gii out.npy --from 3 --speed nan.func.gii", "--speed is nan in row 0; allowed"),
+    ("distance lh.surf.gii out.npy --from 3 --speed nan.func.gii", "--speed is nan at point 0; allowed"),
     ("random-field lh.surf.gii out.npy --range 1e-9", "--range is 1e-09; allowed"),
     ("random-field lh.surf.gii out.npy --range 1 --seed 1e30", "--seed: is '1e30'; allowed: a whole number from"),
     ("directions lh.surf.gii out.npy --method north", "--method is 'north'; allowed: PrincipalCurvature"),

@@ -610,23 +610,25 @@ class OtherCommands(CommandTest):
             self.assertIn("so that no point moves", error)
 
     def test_denoise_mesh_merges_split_vertices(self):
-        noisy = POINTS * (1 + np.random.default_rng(9).normal(0, 0.02, (N, 1)))
-        split = noisy[FACES].reshape(-1, 3)
+        points, faces = samples.sphere(3)
+        noisy = points * (1 + np.random.default_rng(9).normal(0, 0.02, (len(points), 1)))
+        split = noisy[faces].reshape(-1, 3)
         samples.write_surface("soup.surf.gii", split, np.arange(len(split)).reshape(-1, 3))
         code, _, error = run("denoise-mesh", "soup.surf.gii", "apart.surf.gii")
         self.assertEqual(code, 0)
         self.assertIn("boundary points coincide with others and may come apart", error)
         self.succeed("denoise-mesh soup.surf.gii whole.surf.gii --merge")
         corners = read_surface("whole.surf.gii").points
-        for vertex in range(N):
-            self.assertEqual(len(np.unique(corners[FACES.ravel() == vertex], axis=0)), 1)
+        for vertex in range(len(points)):
+            self.assertEqual(len(np.unique(corners[faces.ravel() == vertex], axis=0)), 1)
 
     def test_denoise_mesh_keeps_the_formats_of_meshes(self):
-        noisy = POINTS * (1 + np.random.default_rng(9).normal(0, 0.05, (N, 1)))
-        Path("scan.ply").write_bytes(samples.ply_bytes(points=noisy))
-        Path("scan.off").write_text(samples.off_text(points=noisy))
-        Path("scan.obj").write_text(samples.obj_text(points=noisy))
-        Path("scan.stl").write_bytes(samples.stl_bytes(points=noisy))
+        points, faces = samples.sphere(3)
+        noisy = points * (1 + np.random.default_rng(9).normal(0, 0.05, (len(points), 1)))
+        Path("scan.ply").write_bytes(samples.ply_bytes(points=noisy, faces=faces))
+        Path("scan.off").write_text(samples.off_text(noisy, faces))
+        Path("scan.obj").write_text(samples.obj_text(noisy, faces))
+        Path("scan.stl").write_bytes(samples.stl_bytes(points=noisy, faces=faces))
         for kind in ("ply", "off", "obj", "stl"):
             self.succeed(f"denoise-mesh scan.{kind} clean.{kind}")
             given, found = read_surface(f"scan.{kind}"), read_surface(f"clean.{kind}")
@@ -673,7 +675,7 @@ class OtherCommands(CommandTest):
         expected = heat((POINTS, FACES), NOISE.astype(float), fwhm=5, **ONE_STEP)
         np.testing.assert_array_equal(found.parts[0].values[:, 0], expected)
         np.testing.assert_array_equal(found.parts[0].values[:, 1], SMOOTH)
-        self.succeed("directions a.vtp c.vtp")
+        self.succeed("directions a.vtp c.vtp --method Smooth")
         self.succeed("texture a.vtp 20 d.vtp")
         self.assertEqual(read_data("d.vtp").names, ["f", "g", "Texture"])
 
@@ -710,7 +712,7 @@ class OtherCommands(CommandTest):
                           {"f": NOISE[FACES].reshape(-1)})
         samples.write_vtk("whole.vtp")
         for line in ("smooth {0} {0} 5 {1}", "denoise {0} {0} {1} --weight 2", "enhance {0} {0} {1}",
-                     "edges {0} {0} {1} --threshold 1", "segment {0} {0} {1} --weight 50"):
+                     "edges {0} {0} {1} --threshold 1", "segment {0} {0} {1} --weight 10000"):
             self.succeed(line.format("whole.vtp", "expected.vtp"))
             self.succeed(line.format("soup.vtp", "out.vtp") + " --merge")
             found = read_data("out.vtp").parts[0].values

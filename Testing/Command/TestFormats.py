@@ -360,7 +360,7 @@ class Normals(FormatTest):
         return given._point_normals(), given._face_normals()
 
     def run_both(self, name, done):
-        for command in (["denoise-mesh", name, "new." + name],
+        for command in (["denoise-mesh", name, "new." + name, "--noise", "0.5"],
                         ["normals", name, "new." + name, "--move"]):
             out = self.succeed(*command)
             self.assertTrue((f", normals {done}," in out) == bool(done), out)

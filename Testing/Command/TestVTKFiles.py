@@ -143,7 +143,7 @@ class VTK(ForeignTest):
         corners = np.asarray(surface.points, float)[surface.faces]
         areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
         np.testing.assert_array_equal(areas, [1, 1])
-        self.succeed("directions", "a.vtk", "b.vtk")
+        self.succeed("directions", "a.vtk", "b.vtk", "--method", "Smooth")
         from surfacediffusion.files import vtk_files
         again = read_surface("b.vtk")
         np.testing.assert_array_equal(again.faces, surface.faces)

@@ -161,7 +161,8 @@ def ply_bytes(binary=True, name="vertex_indices", points=POINTS, faces=FACES, co
     header.append(f"element face {len(faces)}\nproperty list uchar int {name}\nend_header\n")
     file = io.BytesIO("\n".join(header).encode())
     file.seek(0, io.SEEK_END)
-    for point, colour, quality in zip(points.tolist(), COLOURS.tolist(), SMOOTH.tolist()):
+    for point, colour, quality in zip(points.tolist(), np.resize(COLOURS, (len(points), 3)).tolist(),
+                                      np.resize(SMOOTH, len(points)).tolist()):
         row = [*point, *colour, quality] if colours else point
         file.write(struct.pack("<fffBBBf" if colours else "<fff", *row) if binary
                    else (" ".join(map(str, row)) + "\n").encode())
