@@ -536,8 +536,9 @@ class OtherCommands(CommandTest):
         self.succeed("normals lh.surf.gii out.func.gii")
         np.testing.assert_allclose(read_data("out.func.gii").parts[0].values, POINTS / 10,
                                    atol=0.02)
-        noise = np.random.default_rng(6).normal(0, 0.01, (N, 1))
-        samples.write_surface("noisy.surf.gii", POINTS * (1 + noise))
+        points, faces = samples.sphere(3)
+        noise = np.random.default_rng(6).normal(0, 0.01, (len(points), 1))
+        samples.write_surface("noisy.surf.gii", points * (1 + noise), faces)
         report = self.report("normals noisy.surf.gii clean.surf.gii --move")
         radii = np.linalg.norm(read_surface("clean.surf.gii").points, axis=1)
         self.assertLess(radii.std(), 0.07)
