@@ -240,6 +240,7 @@ TEST(BlockMessages, ASettingThatIsNotAllowedIsReportedOnceIfABlockHasNoData)
   AddPointArray(BlockOf(blocks, 2), "sources", 1, First);
   vtkNew<vtkSurfaceDistanceFilter> filter;
   filter->SetInputDataObject(blocks);
+  filter->SetMethodToHeat(); // which has no speeds
   filter->SetMaximumDistance(-1.0);
   filter->SetAlongSpeed(2.0);
   filter->SetAcrossSpeed(2.0);

@@ -448,8 +448,10 @@ TEST(InputArrays, AreNotNeededByTexturesHarmonicMapsAndDirectionFields)
   };
   vtkNew<vtkTuringTextureFilter> texture;
   texture->SetNumberOfTimeSteps(3);
+  texture->SetFeatureSize(2.0); // that the mesh resolves
   vtkNew<vtkHarmonicMapFilter> map;
   vtkNew<vtkSurfaceDirectionFieldFilter> field;
+  field->SetMethodToSmooth(); // spheres have no direction of curvature
   run(texture);
   run(map);
   run(field);

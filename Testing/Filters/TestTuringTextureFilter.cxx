@@ -88,7 +88,7 @@ std::string WarningOf(vtkTuringTextureFilter* filter)
 {
   Messages messages(filter);
   filter->Update();
-  EXPECT_TRUE(messages.Errors.empty());
+  EXPECT_TRUE(messages.Errors.empty()) << messages.Errors.front();
   EXPECT_LE(messages.Warnings.size(), 1u); // one per update
   return messages.Warnings.empty() ? std::string() : messages.Warnings.front();
 }
@@ -117,13 +117,29 @@ TEST(TuringTextureFilter, GrowsSpotsFromNoise)
   EXPECT_NEAR(High(Result(filter, "Texture")), 1.0, 1e-12);
   EXPECT_EQ(Result(filter, "TextureColor"), nullptr);
   EXPECT_GT(CountPieces(sphere, u1, 4.2), 12);
-  EXPECT_NEAR(filter->GetWavelength() / filter->GetMeanEdgeLength(), 11.2, 0.1);
+  EXPECT_NEAR(
+    filter->GetWavelength(), std::sqrt(4.0 * vtkMath::Pi()) / 8.0, 1e-3); // of coarse ones
   EXPECT_NEAR(filter->GetWavelengthGrowthRate(), 0.776, 1e-3);
+}
+
+/// Whose default is a size of the surface where this has few edges.
+TEST(TuringTextureFilter, KeepsTheRatesOfFineSurfaces)
+{
+  const auto fine = MakeFilter(Grid(80, 80), 1);
+  fine->Update();
+  EXPECT_EQ(fine->GetDiffusionRateFactor(), 1.0);
+  EXPECT_NEAR(fine->GetWavelength() / fine->GetMeanEdgeLength(), 11.2, 0.1);
+  const auto coarse = MakeFilter(Grid(65, 65), 1);
+  coarse->Update();
+  EXPECT_NEAR(coarse->GetWavelength(), 8.0, 1e-9);
+  coarse->SetDiffusionRate1(22.0);
+  coarse->Update();
+  EXPECT_EQ(coarse->GetDiffusionRateFactor(), 1.0);
 }
 
 TEST(TuringTextureFilter, EveryKineticsMakesAPatternWithItsDefaults)
 {
-  auto sphere = Sphere(4);
+  auto sphere = Sphere(5);
   for (int kinetics = 0; kinetics < 6; ++kinetics)
   {
     const auto filter = MakeFilter(sphere, 1200);
@@ -352,6 +368,7 @@ TEST(TuringTextureFilter, AnExcludedRegionIsIgnored)
   const auto inRegion = [&](vtkIdType i) { return sphere->GetPoint(i)[2] > 0.5; };
   AddPointArray(sphere, "mask", 1, [&](vtkIdType i, int) { return inRegion(i); });
   const auto filter = MakeFilter(sphere, 16);
+  filter->SetFeatureSize(1.0); // that the mesh resolves
   SetInputArray(filter, 1, "mask");
   EXPECT_TRUE(Contains(WarningOf(filter), "the mask changes nothing"));
   filter->SetMaskModeToExclude();
@@ -466,6 +483,7 @@ TEST(TuringTextureFilter, ReportsTheCoarserMeshWithoutAWarning)
   vtkNew<vtkTuringTextureFilter> filter;
   filter->SetInputData(sphere);
   filter->SetNumberOfTimeSteps(8);
+  filter->SetFeatureSize(1.35); // that the coarser mesh resolves
   Messages messages(filter);
   filter->Update();
   EXPECT_EQ(filter->GetCoarseStartVertices(), 0); // below CoarseStartSize
