@@ -119,6 +119,7 @@ void WindowFront::QueueChanged()
 
 void WindowFront::Run(const ProgressMonitor& progress)
 {
+  progress.Report(0.0); // a small surface has no other report
   std::vector<Window> windows;
   long long steps = 0;
   for (this->QueueChanged(); !this->Queue.empty(); this->QueueChanged())
