@@ -315,7 +315,12 @@ inline std::vector<FilterKind> AllFilters()
         f->SetTimeIntegratorToFirstOrder();
         f->ColorOutputOn();
       }),
-    MakeKind<Turing>("TuringCoarseStart", "u1", 4, [](Turing* f) { f->SetCoarseStartSize(300); }),
+    MakeKind<Turing>("TuringCoarseStart", "u1", 4,
+      [](Turing* f)
+      {
+        f->SetCoarseStartSize(300);
+        f->SetDiffusionRate1(22.0); // so that waves have eleven edges on coarse surfaces, too
+      }),
     MakeKind<Segmentation>("SegmentationDefaults", "RegionId", 1),
     MakeKind<Segmentation>("Segmentation", "RegionId", 1, holdToData),
     MakeKind<Segmentation>("SegmentationOfThree", "RegionId", 1,
