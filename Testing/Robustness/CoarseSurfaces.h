@@ -11,7 +11,7 @@
 
 /// Coarse and odd surfaces, as people bring them: what a mean edge, a range or a fit says of fine and
 /// even meshes, it does not say of these. Those that are small stand in a file, which the tests in Python
-/// read, too; those with many parts or many triangles at one place are made here.
+/// read, too; those with many parts are made here.
 namespace SurfaceDiffusion::Testing
 {
 
@@ -63,42 +63,11 @@ inline Surface Row(const Surface& part, Index count, double growth = 1.0)
   return row;
 }
 
-/// A cone of `count` triangles at its tip.
-inline Surface Fan(Index count)
-{
-  Surface fan{ Points(count + 1, 3), Triangles(count, 3) };
-  fan.Vertices.row(count) << 0.0, 0.0, 0.5;
-  for (Index i = 0; i < count; ++i)
-  {
-    const double angle = 2.0 * Pi * static_cast<double>(i) / static_cast<double>(count);
-    fan.Vertices.row(i) << std::cos(angle), std::sin(angle), 0.0;
-    fan.Faces.row(i) << count, i, (i + 1) % count;
-  }
-  return fan;
-}
-
-/// `count` triangles at one edge.
-inline Surface Leaves(Index count)
-{
-  Surface book{ Points(count + 2, 3), Triangles(count, 3) };
-  book.Vertices.row(count) << 0.0, 0.0, 0.0;
-  book.Vertices.row(count + 1) << 0.0, 0.0, 1.0;
-  for (Index i = 0; i < count; ++i)
-  {
-    const double angle = 2.0 * Pi * static_cast<double>(i) / static_cast<double>(count);
-    book.Vertices.row(i) << std::cos(angle), std::sin(angle), 0.5;
-    book.Faces.row(i) << count, count + 1, i;
-  }
-  return book;
-}
-
 inline std::vector<NamedSurface> CoarseSurfaces()
 {
   std::vector<NamedSurface> surfaces = SmallCoarseSurfaces();
-  surfaces.push_back({ "ManyParts", Row(Icosphere(0), 500) });
+  surfaces.push_back({ "ManyParts", Row(Icosphere(0), 200) });
   surfaces.push_back({ "PartsOfManySizes", Row(Icosphere(1), 4, 10.0) });
-  surfaces.push_back({ "Fan", Fan(2000) });
-  surfaces.push_back({ "Leaves", Leaves(2000) });
   return surfaces;
 }
 
