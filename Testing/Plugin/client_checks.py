@@ -51,7 +51,7 @@ SLIPS = {
     "SurfaceCurvatureFilter": lambda curved: {"FWHM": curved.FWHM + 0.2},
     "SurfaceDerivativesFilter": lambda derived: {"SmoothingFWHM": derived.SmoothingFWHM + 0.2},
     "SurfaceDirectionFieldFilter": lambda field: {"Angle": field.Angle + 3.0},
-    "SurfaceDistanceFilter": lambda _: {"Method": "Eikonal"},
+    "SurfaceDistanceFilter": lambda _: {"Method": "Heat"},
     "SurfaceInterpolationFilter": lambda spline: {
         "AutomaticSmoothing": 0, "Smoothing": 1.2 * spline.GetPropertyValue("EffectiveSmoothing")},
     "SurfaceRandomFieldFilter": lambda field: {"RandomSeed": field.RandomSeed + 1},
