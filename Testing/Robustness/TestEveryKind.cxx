@@ -156,7 +156,6 @@ std::vector<FilterKind> KindsOfParts()
       bool finds = name.find("MumfordShah") == 0 && name != "MumfordShahGiven";
       for (const char* const found :
         { "Automatic", "Found", "CoarseStart", "Segmentation", "Direction", "Interpolation",
-          "Turing", // the size of its features is a part of the whole surface
           "DistanceHeat", // of one mean length of edges
           "DistanceEikonal", "ArrivalTime", // round-off decides between fronts that arrive together
           "ConductionVelocity" }) // the inverse of gradients, in which round-off may be large
