@@ -141,10 +141,11 @@ public:
 
   /**
    * The requested wavelength, in coordinate units. 0 (default): with the default diffusion rates in
-   * natural units, an eighth of the root of the area of all surfaces where this root has fewer than
-   * 64 mean edge lengths h, in which lengths then mean nothing; otherwise the rates as they are. All four diffusion rates are
-   * multiplied by one factor so that the fastest-growing wavelength along e1 is FeatureSize (with
-   * rates per cell: the wavelength for their means over the surface). If no wave grows fastest, the
+   * natural units, an eighth of the root of the area (of several surfaces, of their mean area by area)
+   * where this root has fewer than 64 mean edge lengths h, in which lengths then mean nothing;
+   * otherwise the rates as they are. All four diffusion rates are multiplied by one factor so that the
+   * fastest-growing wavelength along e1 is FeatureSize (with rates per cell: the wavelength for their
+   * means over the surface). If no wave grows fastest, the
    * rates do not change and a warning is given.
    *
    * A warning gives the RefineTo that resolves a wavelength below 6 mean edge lengths. Another one

@@ -27,6 +27,21 @@ double DrawnArea(const TriangleMesh& mesh, const ParallelFor& parallel)
   return Sum(parallel, mesh.NumberOfTriangles(), [&](Index t) { return mesh.Shapes()[t].Area(); });
 }
 
+/// The mean of the areas with themselves as weights, which does not depend on copies of a surface.
+double MeanByArea(const std::vector<double>& areas)
+{
+  const double largest = areas.empty() ? 0.0 : *std::max_element(areas.begin(), areas.end());
+  double sum = 0.0;
+  double weights = 0.0;
+  for (const double area : areas)
+  {
+    const double weight = largest > 0.0 ? area / largest : 0.0; // squares may be too large
+    sum += weight * area;
+    weights += weight;
+  }
+  return weights > 0.0 ? sum / weights : 0.0;
+}
+
 } // namespace
 
 void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSettings> settings,
@@ -157,7 +172,7 @@ void Run::MeasureUnits(const Reduction& processes)
 {
   double length = 0.0;
   double edges = 0.0;
-  double area = 0.0;
+  std::vector<double> areas;
   this->LongEdges = 0.0;
   ValueStatistics statistics;
   for (const auto& block : this->Blocks)
@@ -176,7 +191,8 @@ void Run::MeasureUnits(const Reduction& processes)
     edges += ofBlock.Number;
     length += ofBlock.Sum * mesh.LengthUnit();
     const double drawn = DrawnArea(block->Surface->InputMesh(), this->Parallel);
-    area += (block->Decomposition ? processes.Sum(drawn) : drawn) * std::pow(mesh.LengthUnit(), 2);
+    areas.push_back(
+      (block->Decomposition ? processes.Sum(drawn) : drawn) * std::pow(mesh.LengthUnit(), 2));
     this->LongEdges += ofBlock.LeftOut;
     statistics.Merge(block->Statistics);
   }
@@ -186,7 +202,7 @@ void Run::MeasureUnits(const Reduction& processes)
   UnitSystem units;
   units.Natural = !this->Settings->IsAbsolute();
   units.MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
-  units.Area = area;
+  units.Area = MeanByArea(areas);
   units.ValueRange = traits.HasValueRange ? statistics.Range() : 1.0;
   if (!std::isfinite(units.ValueRange) || !std::isfinite(units.MeanEdgeLength))
   {

@@ -156,7 +156,8 @@ bool IsFinite(vtkDataArray* array, vtkIdType point)
 }
 
 /// Whether the added arrays are finite; unused points keep their value, even NaN, derivatives are
-/// missing beside missing data, and second ones at boundaries that do not determine them, and distances are infinite where no source is near.
+/// missing beside missing data and Laplacians at boundaries that do not determine them, and distances
+/// are infinite where no source is near.
 bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
 {
   vtkPolyData* const output = filter->GetOutput();
