@@ -19,10 +19,10 @@ struct VertexRange
   Index Size() const { return this->End - this->Begin; }
 };
 
-/// The vertices near a vertex, by the number of edges between them. Through a vertex with more than
-/// 64 neighbours, such as the middle of a disc that is cut into slices, a vertex is near to only
-/// about 64 of them, so that the rings of all vertices have a size in proportion. The pattern, of the stiffness
-/// matrix, must outlive it; no edge leaves the range.
+/// The vertices near a vertex, by the number of edges between them. Ways do not lead through another
+/// vertex with more than 64 neighbours, such as the middle of a disc that is cut into slices, which
+/// would make all of them near to each other. The pattern, of the stiffness matrix, must outlive it;
+/// no edge leaves the range.
 class Rings
 {
 public:
@@ -46,9 +46,11 @@ public:
       for (; this->RingBegin < end; ++this->RingBegin)
       {
         const Index i = this->Disk[this->RingBegin];
-        const Index stride =
-          i == centre ? 1 : 1 + (this->Outer[i + 1] - this->Outer[i] - 1) / LargestStar;
-        for (Index slot = this->Outer[i]; slot < this->Outer[i + 1]; slot += stride)
+        if (i != centre && this->Outer[i + 1] - this->Outer[i] > LargestStar)
+        {
+          continue;
+        }
+        for (Index slot = this->Outer[i]; slot < this->Outer[i + 1]; ++slot)
         {
           Index& seen = this->SeenIn[static_cast<std::size_t>(this->Inner[slot] - this->First)];
           if (seen != this->Search)
