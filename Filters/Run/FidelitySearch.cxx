@@ -100,7 +100,11 @@ public:
   void Advance(const FidelityModelMaker& makeModel);
   void WarnIfNotFound(Notes& notes) const;
 
-  double Weight() const { return this->Parts[this->Largest].Search.Trial(); }
+  /// That of the largest component; the start on a surface without triangles.
+  double Weight() const
+  {
+    return this->Parts.empty() ? this->Task.Start : this->Parts.front().Search.Trial();
+  }
   /// The weights over that of the largest component, per vertex; no entry if there is one.
   Vector Factors() const;
 
@@ -122,8 +126,7 @@ private:
   const FidelityTask& Task;
   PointData Data;
   const SparsePattern Pattern;
-  std::vector<Part> Parts; ///< connected components
-  std::size_t Largest = 0;
+  std::vector<Part> Parts; ///< connected components, the largest first
   std::optional<NoiseEstimate> OfAll; ///< for components of too few points
   PointData Compared; ///< the measured data that the result has to differ from by the noise
 };

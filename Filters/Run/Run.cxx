@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace SurfaceDiffusion
@@ -21,26 +22,33 @@ namespace
 constexpr double LargestMagnitude = 1e100;
 constexpr double SmallestMagnitude = 1e-100;
 
-/// Of the triangles, in LengthUnit()^2.
-double DrawnArea(const TriangleMesh& mesh, const ParallelFor& parallel)
+/// Of connected components: A_c and A_c^2, in units of the largest LengthUnit().
+struct AreaSums
 {
-  return Sum(parallel, mesh.NumberOfTriangles(), [&](Index t) { return mesh.Shapes()[t].Area(); });
-}
+  double Area = 0.0;
+  double Square = 0.0;
 
-/// The mean of the areas with themselves as weights, which does not depend on copies of a surface.
-double MeanByArea(const std::vector<double>& areas)
-{
-  const double largest = areas.empty() ? 0.0 : *std::max_element(areas.begin(), areas.end());
-  double sum = 0.0;
-  double weights = 0.0;
-  for (const double area : areas)
+  void Add(const TriangleMesh& mesh, double unit, const ParallelFor& parallel)
   {
-    const double weight = largest > 0.0 ? area / largest : 0.0; // squares may be too large
-    sum += weight * area;
-    weights += weight;
+    const double thirds = std::pow(mesh.LengthUnit() / unit, 2);
+    std::vector<Index> components(static_cast<std::size_t>(mesh.NumberOfComponents()));
+    std::iota(components.begin(), components.end(), 0);
+    Values areas(mesh.NumberOfComponents(), 1);
+    for (const Index c : components)
+    {
+      const Index begin = mesh.ComponentsBegin()[c];
+      areas(c, 0) = thirds *
+        Sum(parallel, mesh.ComponentsBegin()[c + 1] - begin,
+          [&](Index i) { return mesh.ThirdOfTriangles(begin + i); });
+    }
+    Values whole = areas;
+    mesh.GetReduction().SumComponents(components, whole);
+    double sums[2] = { areas.sum(), areas.col(0).dot(whole.col(0)) };
+    mesh.GetReduction().Sum(sums, 2);
+    this->Area += sums[0];
+    this->Square += sums[1];
   }
-  return weights > 0.0 ? sum / weights : 0.0;
-}
+};
 
 } // namespace
 
@@ -172,7 +180,12 @@ void Run::MeasureUnits(const Reduction& processes)
 {
   double length = 0.0;
   double edges = 0.0;
-  std::vector<double> areas;
+  AreaSums areas;
+  double unit = 0.0;
+  for (const auto& block : this->Blocks)
+  {
+    unit = std::max(unit, block->Surface->Mesh().LengthUnit());
+  }
   this->LongEdges = 0.0;
   ValueStatistics statistics;
   for (const auto& block : this->Blocks)
@@ -190,9 +203,7 @@ void Run::MeasureUnits(const Reduction& processes)
     }
     edges += ofBlock.Number;
     length += ofBlock.Sum * mesh.LengthUnit();
-    const double drawn = DrawnArea(block->Surface->InputMesh(), this->Parallel);
-    areas.push_back(
-      (block->Decomposition ? processes.Sum(drawn) : drawn) * std::pow(mesh.LengthUnit(), 2));
+    areas.Add(block->Surface->InputMesh(), unit, this->Parallel);
     this->LongEdges += ofBlock.LeftOut;
     statistics.Merge(block->Statistics);
   }
@@ -202,7 +213,7 @@ void Run::MeasureUnits(const Reduction& processes)
   UnitSystem units;
   units.Natural = !this->Settings->IsAbsolute();
   units.MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
-  units.Area = MeanByArea(areas);
+  units.Area = areas.Area > 0.0 ? areas.Square / areas.Area * unit * unit : 0.0;
   units.ValueRange = traits.HasValueRange ? statistics.Range() : 1.0;
   if (!std::isfinite(units.ValueRange) || !std::isfinite(units.MeanEdgeLength))
   {

@@ -21,7 +21,7 @@ struct UnitSystem
 {
   bool Natural = true;
   double MeanEdgeLength = 1.0; ///< h, in coordinate units
-  double Area = 1.0; ///< of a surface; of several the mean by area, in coordinate units
+  double Area = 1.0; ///< of a connected component, the mean by area, in coordinate units
   double ValueRange = 1.0; ///< R, in the array's units
   double LengthUnit = 1.0; ///< of the mesh of the numerics, in coordinate units
   double ValueUnit = 1.0; ///< of the values of the numerics, in the array's units

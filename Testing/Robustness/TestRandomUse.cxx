@@ -300,12 +300,22 @@ void UseAtRandom(
     ASSERT_TRUE(!failed || IsUnchanged(filter, surface)) << lastErrors[0];
     ++uses[seed % classes.size()].Updates;
     uses[seed % classes.size()].Results += !failed && !IsUnchanged(filter, surface);
-    // After an error about half of the properties return to their defaults, to make results likely.
+    // After an error about half of the properties and arrays return to their defaults, to make results
+    // likely.
     for (const RandomProperty& property : kind.Properties)
     {
       if (failed && dice.Flip())
       {
         property.Copy(untouched, filter);
+      }
+    }
+    for (int index = 0; index < NumberOfArrays; ++index)
+    {
+      if (failed && dice.Flip())
+      {
+        vtkNew<vtkInformation> copy;
+        copy->Copy(untouched->GetInputArrayInformation(index), 1);
+        filter->SetInputArrayToProcess(index, copy);
       }
     }
   }

@@ -27,6 +27,7 @@ using Row3 = Eigen::RowVector3d;
 Row3 TargetNormal(
   const TriangleMesh& mesh, Index t, const Row3& n, const PointData& before, const Values& after)
 {
+  constexpr double noticeable = 0.001; // as a square, of three unit vectors together
   Eigen::Matrix3d old;
   Eigen::Matrix3d now;
   bool isKnown = true;
@@ -42,15 +43,14 @@ Row3 TargetNormal(
   }
   const Row3 oldMean = old.colwise().mean();
   const Row3 mean = now.colwise().mean();
-  const double spread = (old.rowwise() - oldMean).squaredNorm();
   const double change = (now - old).squaredNorm();
   if (!(change > 0.0))
   {
     return n; // also where a vector was missing
   }
-  const double kept = std::max(0.0, 1.0 - change / spread);
-  const double rest = isKnown ? kept * kept : 0.0;
   const Row3 from = oldMean.stableNormalized();
+  const double kept = std::max(0.0, 1.0 - change / noticeable);
+  const double rest = isKnown ? kept * kept : 0.0;
   const Row3 to = mean.stableNormalized();
   // The smallest rotation that takes one mean to the other, of the rest
   const Row3 axis = from.cross(to);

@@ -35,10 +35,9 @@ double EnclosedVolume(
 ///
 /// N has the direction of m + r R (n - m_0), with the normal n of the triangle, the directions m_0 and
 /// m of the means of the vectors at its corners before and after, the smallest rotation R from m_0 to
-/// m, and r = max(0, 1 - s/s_0)^2, with the sum s of the squared changes of the vectors and that of
-/// their squared deviations from their mean before, s_0. So what a triangle has beside the mean of its
-/// corners, noise or the shape of a coarse surface, goes as the vectors change, and vectors that have
-/// not changed move no point. Where vectors before are missing, r = 0.
+/// m, and r = max(0, 1 - 1000 s)^2 with the sum s of the squared changes of the vectors. So vectors that
+/// have not changed move no point, and where they have, triangles lose what they have beside the mean
+/// of their corners, noise among it. Where vectors before are missing, r = 0.
 ///
 /// points: those that the mesh was made from; before: unit vectors in Start, Missing where they are
 /// not known, per mesh vertex; after: n x 3 unit vectors. Signs of vectors and the orientation of
