@@ -1028,7 +1028,8 @@ TEST(PiecesTogether, InterpolateTheValuesOfAllProcesses)
       const double difference = onCells
         ? LargestDifferenceOfCells(together->GetOutput(), alone->GetOutput(), of.c_str())
         : LargestDifference(together->GetOutput(), alone->GetOutput(), of.c_str());
-      EXPECT_LT(difference, 1e-9) << kind << " " << of;
+      // Variances are differences of inverses, of which round-off takes nine digits.
+      EXPECT_LT(difference, result == std::string("Error") ? 2e-8 : 1e-9) << kind << " " << of;
     }
     EXPECT_GT(alone->GetNumberOfValues(), isBeside ? probes - 1 : N * N / 2) << kind;
   }

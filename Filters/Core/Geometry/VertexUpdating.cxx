@@ -281,7 +281,7 @@ Points UpdateVerticesFromNormals(const TriangleMesh& mesh, const Eigen::Ref<cons
   ForEach(parallel, n,
     [&](Index i) { start.row(i) = (points.row(mesh.InputVertex()[i]) - origin) / unit; });
   Values step = Values::Zero(n, 3);
-  if (before.Missing.any() || before.Start != after)
+  if (before.Start != after)
   {
     Points normals(mesh.NumberOfTriangles(), 3);
     ForEach(parallel, mesh.NumberOfTriangles(),
