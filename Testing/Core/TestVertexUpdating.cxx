@@ -195,12 +195,24 @@ TEST(VertexUpdating, VectorsThatHaveNotChangedMoveNothing)
   }
 }
 
+TEST(VertexUpdating, AFitThatMissesTheToleranceIsReported)
+{
+  const Surface s = Noisy(Icosphere(2), 0.03);
+  const TriangleMesh mesh(s.Vertices, s.Faces);
+  VertexMotion motion;
+  UpdateVerticesFromNormals(mesh, s.Vertices, Unknown(mesh.NumberOfVertices()),
+    VertexNormals(mesh, s), 0.7, motion, { 1e-30, 5 });
+  EXPECT_GT(motion.MissedResidual, 0.0);
+  EXPECT_LT(motion.MissedResidual, 1e-9); // that of the factorisation
+}
+
+// By a small angle, at which r is nearly 1.
 TEST(VertexUpdating, TrianglesTurnAsTheirVectorsDo)
 {
   const Surface s = Noisy(Icosphere(2), 0.05);
   const TriangleMesh mesh(s.Vertices, s.Faces);
   const Eigen::Matrix3d turn =
-    Eigen::AngleAxisd(0.002, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+    Eigen::AngleAxisd(1e-4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
   const Values normals = VertexNormals(mesh, s);
   VertexMotion motion;
   Surface moved = s;
