@@ -141,7 +141,7 @@ public:
 
   /**
    * The requested wavelength, in coordinate units. 0 (default): with the default diffusion rates in
-   * natural units, an eighth of the root of the area (of several surfaces, of their mean area by area)
+   * natural units, an eighth of the root of the area (of several parts, of their mean area by area)
    * where this root has fewer than 64 mean edge lengths h, in which lengths then mean nothing;
    * otherwise the rates as they are. All four diffusion rates are multiplied by one factor so that the
    * fastest-growing wavelength along e1 is FeatureSize (with rates per cell: the wavelength for their
