@@ -6,10 +6,10 @@
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
 #include "Run/LinearLight.h"
+#include "Run/MeanPartArea.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 namespace SurfaceDiffusion
@@ -21,34 +21,6 @@ namespace
 /// Squares of values within these bounds neither overflow nor vanish.
 constexpr double LargestMagnitude = 1e100;
 constexpr double SmallestMagnitude = 1e-100;
-
-/// Of connected components: A_c and A_c^2, in units of the largest LengthUnit().
-struct AreaSums
-{
-  double Area = 0.0;
-  double Square = 0.0;
-
-  void Add(const TriangleMesh& mesh, double unit, const ParallelFor& parallel)
-  {
-    const double thirds = std::pow(mesh.LengthUnit() / unit, 2);
-    std::vector<Index> components(static_cast<std::size_t>(mesh.NumberOfComponents()));
-    std::iota(components.begin(), components.end(), 0);
-    Values areas(mesh.NumberOfComponents(), 1);
-    for (const Index c : components)
-    {
-      const Index begin = mesh.ComponentsBegin()[c];
-      areas(c, 0) = thirds *
-        Sum(parallel, mesh.ComponentsBegin()[c + 1] - begin,
-          [&](Index i) { return mesh.ThirdOfTriangles(begin + i); });
-    }
-    Values whole = areas;
-    mesh.GetReduction().SumComponents(components, whole);
-    double sums[2] = { areas.sum(), areas.col(0).dot(whole.col(0)) };
-    mesh.GetReduction().Sum(sums, 2);
-    this->Area += sums[0];
-    this->Square += sums[1];
-  }
-};
 
 } // namespace
 
@@ -180,12 +152,7 @@ void Run::MeasureUnits(const Reduction& processes)
 {
   double length = 0.0;
   double edges = 0.0;
-  AreaSums areas;
-  double unit = 0.0;
-  for (const auto& block : this->Blocks)
-  {
-    unit = std::max(unit, block->Surface->Mesh().LengthUnit());
-  }
+  std::vector<const TriangleMesh*> drawn;
   this->LongEdges = 0.0;
   ValueStatistics statistics;
   for (const auto& block : this->Blocks)
@@ -203,7 +170,7 @@ void Run::MeasureUnits(const Reduction& processes)
     }
     edges += ofBlock.Number;
     length += ofBlock.Sum * mesh.LengthUnit();
-    areas.Add(block->Surface->InputMesh(), unit, this->Parallel);
+    drawn.push_back(&block->Surface->InputMesh());
     this->LongEdges += ofBlock.LeftOut;
     statistics.Merge(block->Statistics);
   }
@@ -213,7 +180,7 @@ void Run::MeasureUnits(const Reduction& processes)
   UnitSystem units;
   units.Natural = !this->Settings->IsAbsolute();
   units.MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;
-  units.Area = areas.Area > 0.0 ? areas.Square / areas.Area * unit * unit : 0.0;
+  units.Area = MeanPartArea(drawn);
   units.ValueRange = traits.HasValueRange ? statistics.Range() : 1.0;
   if (!std::isfinite(units.ValueRange) || !std::isfinite(units.MeanEdgeLength))
   {

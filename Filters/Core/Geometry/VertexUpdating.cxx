@@ -48,9 +48,9 @@ Row3 TargetNormal(
   {
     return n; // also where a vector was missing
   }
-  const Row3 from = oldMean.stableNormalized();
   const double kept = std::max(0.0, 1.0 - change / noticeable);
   const double rest = isKnown ? kept * kept : 0.0;
+  const Row3 from = oldMean.stableNormalized();
   const Row3 to = mean.stableNormalized();
   // The smallest rotation that takes one mean to the other, of the rest
   const Row3 axis = from.cross(to);
