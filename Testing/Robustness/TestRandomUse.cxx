@@ -313,9 +313,7 @@ void UseAtRandom(
     {
       if (failed && dice.Flip())
       {
-        vtkNew<vtkInformation> copy;
-        copy->Copy(untouched->GetInputArrayInformation(index), 1);
-        filter->SetInputArrayToProcess(index, copy);
+        CopyInputArray(untouched, filter, index);
       }
     }
   }

@@ -16,6 +16,14 @@
 namespace FilterTest
 {
 
+/// Gives a filter the input array of another at an index.
+inline void CopyInputArray(vtkPolyDataAlgorithm* from, vtkPolyDataAlgorithm* to, int index)
+{
+  vtkNew<vtkInformation> copy;
+  copy->Copy(from->GetInputArrayInformation(index), 1);
+  to->SetInputArrayToProcess(index, copy);
+}
+
 /// A new filter with the same properties and arrays.
 inline vtkSmartPointer<vtkPolyDataAlgorithm> Twin(
   const FilterClass& kind, vtkPolyDataAlgorithm* filter)
@@ -27,9 +35,7 @@ inline vtkSmartPointer<vtkPolyDataAlgorithm> Twin(
   }
   for (int index = 0; index < 10; ++index)
   {
-    vtkNew<vtkInformation> copy;
-    copy->Copy(filter->GetInputArrayInformation(index), 1);
-    twin->SetInputArrayToProcess(index, copy);
+    CopyInputArray(filter, twin, index);
   }
   return twin;
 }
