@@ -352,7 +352,6 @@ ModelTraits SegmentationSettings::DescribeModel() const
   traits.StartsFromKnownValues = true;
   traits.ResultOnCells = this->ResultOnCells;
   traits.CanBeDistributed = false;
-  traits.EstimatesNoise = this->AutomaticMeans || this->Means.empty();
   return traits;
 }
 

@@ -114,7 +114,7 @@ std::vector<FilterKind> FiltersThatTakeAllValues()
   {
     const std::string name = kind.Name;
     return name.rfind("Interpolation", 0) == 0 || name.rfind("MumfordShah", 0) == 0 ||
-      name.rfind("Segmentation", 0) == 0 || name == "HeatAutomatic" || name == "TVAutomatic" ||
+      name == "SegmentationOfCells" || name == "HeatAutomatic" || name == "TVAutomatic" ||
       name == "HeatDeblurredFound" || name == "TVDeblurredFound";
   };
   kinds.erase(std::remove_if(kinds.begin(), kinds.end(), asks), kinds.end());
