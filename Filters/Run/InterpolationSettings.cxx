@@ -107,8 +107,7 @@ void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
     if (found.Parts > 1)
     {
       text << " of " << found.PartsWithTooFewValues
-           << (found.PartsWithTooFewValues == 1 ? " connected component"
-                                                : " connected components");
+           << (found.PartsWithTooFewValues == 1 ? " connected component" : " connected components");
     }
     result.WarnOnce(text << " have a value, too few for " << Word::Setting("AutomaticSmoothing")
                          << ": the values hold exactly" << (found.Parts > 1 ? " there" : ""));
