@@ -119,7 +119,8 @@ TEST(Interpolation, OfConstantValuesIsTheConstant)
           const auto data = ValuesAt(mesh, field, [&](Index i) { return i % step == 0; });
           const Interpolation::Result result = Interpolate(assembler, data, settings);
           EXPECT_LT(LargestDifference(result.U, field), 1e-10);
-          EXPECT_EQ(result.PartsWithTooFewValues > 0, choice == Choice::Automatic && data.Count() < 3);
+          EXPECT_EQ(
+            result.PartsWithTooFewValues > 0, choice == Choice::Automatic && data.Count() < 3);
         }
       }
     }

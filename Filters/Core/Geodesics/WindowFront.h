@@ -57,7 +57,7 @@ private:
   void ReachFrom(Index corner, const Eigen::Vector2d& place, Index source);
   /// A way to a vertex, if it is shorter than those known.
   void Reach(Index vertex, double time, Index source, const Incoming& incoming);
-  /// Ways from a vertex in all directions, whatever way leads there.
+  /// Ways from a vertex in all directions, independent of the way that leads there.
   void LeaveEverywhere(Index vertex);
   void LeaveVertex(Index vertex);
   /// Ways from a corner of a triangle over the edge opposite, between angles from the edge to the
