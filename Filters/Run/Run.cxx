@@ -118,7 +118,7 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   this->LeaveOutUndetermined(input, *fields, processes, block, progress);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
-  block.Statistics.Add(*block.Surface, *fields, inpaint);
+  block.Statistics.Add(*block.Surface, *fields, inpaint, processes);
   block.HasData = processes.Any(fields->Data.Values.cols() > 0);
   block.HasMask = !mask.empty();
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
@@ -174,7 +174,6 @@ void Run::MeasureUnits(const Reduction& processes)
     this->LongEdges += ofBlock.LeftOut;
     statistics.Merge(block->Statistics);
   }
-  statistics.Merge(processes);
 
   const ModelTraits traits = this->Settings->DescribeModel();
   UnitSystem units;
