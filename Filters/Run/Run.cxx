@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
-#include "Core/Surface/EdgeLengths.h"
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
 #include "Run/LinearLight.h"
@@ -158,20 +157,17 @@ void Run::MeasureUnits(const Reduction& processes)
   for (const auto& block : this->Blocks)
   {
     const TriangleMesh& mesh = block->Surface->Mesh();
-    EdgeLengths ofBlock;
-    if (block->Decomposition)
+    if (processes.Any(!block->Edges))
     {
-      ofBlock = MeasureEdgeLengths(block->Surface->InputMesh(), processes);
+      block->Edges = block->Decomposition
+        ? MeasureEdgeLengths(block->Surface->InputMesh(), processes)
+        : EdgeLengths{ mesh.TotalEdgeLength(), static_cast<double>(mesh.NumberOfEdges()),
+            CountLongEdges(block->Surface->InputMesh(), this->Parallel) };
     }
-    else
-    {
-      ofBlock = { mesh.TotalEdgeLength(), static_cast<double>(mesh.NumberOfEdges()),
-        CountLongEdges(block->Surface->InputMesh(), this->Parallel) };
-    }
-    edges += ofBlock.Number;
-    length += ofBlock.Sum * mesh.LengthUnit();
+    edges += block->Edges->Number;
+    length += block->Edges->Sum * mesh.LengthUnit();
     drawn.push_back(&block->Surface->InputMesh());
-    this->LongEdges += ofBlock.LeftOut;
+    this->LongEdges += block->Edges->LeftOut;
     statistics.Merge(block->Statistics);
   }
 
