@@ -201,11 +201,12 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return 1
 
     def _find_state(self, inputs: Any, parts: Parts) -> list[Any]:
-        """The contents of the surfaces, and when the filter and its second input were modified. (ParaView
-        copies the input for each time.)"""
+        """The contents of the surfaces and the surface that each is a piece of, and when the filter and its
+        second input were modified. (ParaView copies the input for each time.)"""
         digest = hashlib.sha1()
         for block in parts.blocks:
             data = block.input
+            digest.update(str(block.surface).encode())
             arrays = [data.GetPoints().GetData()] if data.GetPoints() else []
             for cells in (data.GetPolys(), data.GetStrips()):
                 arrays += [cells.GetOffsetsArray(), cells.GetConnectivityArray()]
