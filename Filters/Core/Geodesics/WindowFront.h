@@ -18,7 +18,7 @@
 namespace SurfaceDiffusion
 {
 
-/// The windows of one call of ExactDistance::Find().
+/// The windows from one set of sources, see ExactDistance.
 class WindowFront
 {
 public:
@@ -27,9 +27,12 @@ public:
   void AddSource(const SourcePiece& piece, Index source);
   /// Throws Aborted.
   void Run(const ProgressMonitor& progress);
+  /// As after construction, once Run() has ended, in the time that Run() took.
+  void Clear();
 
   std::vector<double> Times;
   std::vector<Index> Sources;
+  std::vector<Index> Reached; ///< vertices
 
 private:
   /// Windows that have come to an edge and not yet gone over its triangle.
@@ -93,7 +96,7 @@ private:
   std::priority_queue<Event, std::vector<Event>, std::greater<>> Queue;
   std::vector<Index> Changed; ///< edges whose windows have changed
   WindowBuffers Buffers;
-  Index NumberReached = 0;
+  std::vector<Index> Crossed; ///< edges
 };
 
 } // namespace SurfaceDiffusion

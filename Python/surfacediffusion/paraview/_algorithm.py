@@ -17,7 +17,7 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
 from ._fields import (
-    BY_INDEX, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
+    BY_INDEX, FLAGS, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement, mean_edge_length
 from ._surfaces import (
@@ -201,11 +201,12 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return 1
 
     def _find_state(self, inputs: Any, parts: Parts) -> list[Any]:
-        """The contents of the surfaces, and when the filter and its second input were modified. (ParaView
-        copies the input for each time.)"""
+        """The contents of the surfaces and the surface that each is a piece of, and when the filter and its
+        second input were modified. (ParaView copies the input for each time.)"""
         digest = hashlib.sha1()
         for block in parts.blocks:
             data = block.input
+            digest.update(str(block.surface).encode())
             arrays = [data.GetPoints().GetData()] if data.GetPoints() else []
             for cells in (data.GetPolys(), data.GetStrips()):
                 arrays += [cells.GetOffsetsArray(), cells.GetConnectivityArray()]
@@ -341,7 +342,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         attributes: set[int] = {
             vtkDataSetAttributes.SCALARS, vtkDataSetAttributes.VECTORS, vtkDataSetAttributes.NORMALS}
         attributes |= {choice.attribute for choice in choices if choice.attribute is not None}
-        names = {choice.name for choice in choices if choice.name}
+        names: dict[str, bool] = {}
+        for index, choice in self.choices.items():
+            if choice.name:
+                names[choice.name] = names.get(choice.name, True) and index in FLAGS
         return stitch_pieces(pieces, self.own["SeamTolerance"], names, attributes)
 
     def complete_pieces(self, surface: Stitched) -> None:

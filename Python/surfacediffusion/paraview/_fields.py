@@ -19,6 +19,7 @@ from ._surfaces import BETWEEN, GIVEN_CELL, Block, SurfaceError, hidden_points, 
 #: The attribute of Fields that has the array of an index; 7 has terms of data in place of data.
 BY_INDEX = ("data", "mask", "direction", "fixed", "rates", "fidelity", "seeds", "data", "speeds",
             "start_times")
+FLAGS = (1, 3)  #: the indices of arrays of flags, whose type has no meaning
 POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
 ANY = 0  #: number of components
 _LINES = (3, 4)  #: types of cells: line, polyline
@@ -168,7 +169,8 @@ def find_disagreement(choices: dict[int, Choice], blocks: list[Block]) -> str:
             if not isinstance(found, vtkDataArray) or block.input.GetNumberOfPoints() == 0:
                 continue
             size = found.GetNumberOfComponents()
-            text = (f'"{found.GetName() or ""}" ({found.GetDataTypeAsString()}, {size} '
+            kind = "" if index in FLAGS else f"{found.GetDataTypeAsString()}, "
+            text = (f'"{found.GetName() or ""}" ({kind}{size} '
                     f'component{"" if size == 1 else "s"}, on {"cells" if on_cells else "points"})')
             first = known.setdefault((block.surface, index), text)
             if first != text:
