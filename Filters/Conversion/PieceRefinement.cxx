@@ -130,24 +130,7 @@ PieceRefinement::EdgeSum PieceRefinement::SumEdges(const std::vector<SurfacePiec
     {
       TriangleCells cells;
       const SurfaceArrays arrays = ReadSurface(pieces[p].Input, nullptr, false, cells);
-      std::vector<std::pair<Index, Index>> edges;
-      edges.reserve(static_cast<std::size_t>(arrays.Triangles.size()));
-      for (Eigen::Index t = 0; t < arrays.Triangles.rows(); ++t)
-      {
-        for (int a = 0; a < 3; ++a)
-        {
-          edges.emplace_back(
-            std::minmax({ arrays.Triangles(t, a), arrays.Triangles(t, (a + 1) % 3) }));
-        }
-      }
-      std::sort(edges.begin(), edges.end());
-      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-      std::vector<double> lengths;
-      for (const auto& [a, b] : edges)
-      {
-        lengths.push_back((arrays.Points.row(a) - arrays.Points.row(b)).norm());
-      }
-      const EdgeLengths counted = MeasureEdgeLengths(lengths);
+      const EdgeLengths counted = MeasureEdgeLengths(arrays.Points, arrays.Triangles);
       piece.SumOfEdges = counted.Sum;
       piece.NumberOfEdges = counted.Number;
     }

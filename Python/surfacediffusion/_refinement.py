@@ -25,8 +25,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 MAXIMUM_TRIANGLES = 4_000_000
 
 #: Edges per wavelength of a texture on a refined surface, and those that a mesh should have.
-EDGES_PER_WAVELENGTH = 8
-FEWEST_EDGES_PER_WAVELENGTH = 6
+EDGES_PER_WAVELENGTH = _core.edges_of_refinement
+FEWEST_EDGES_PER_WAVELENGTH = _core.edges_per_wavelength
 
 @dataclass(frozen=True)
 class RefinedSurface:
@@ -170,32 +170,10 @@ def _refine(surface: Surface, length: float, limit: Any, progress: Progress = Fa
     return refined
 
 
-def edge_lengths(points: NDArray[np.float64], triangles: NDArray[Any]) -> NDArray[np.float64]:
-    """The lengths of the distinct edges."""
-    edges = np.concatenate([triangles[:, :2], triangles[:, 1:], triangles[:, [0, 2]]])
-    edges = np.unique(np.sort(edges, axis=1), axis=0)
-    lengths: NDArray[np.float64] = np.linalg.norm(np.subtract(*points[edges.T]), axis=1)
-    return lengths
-
-
-def counted_lengths(points: NDArray[np.float64], triangles: NDArray[Any]) -> NDArray[np.float64]:
-    """Those that count in the mean edge length h: EdgeLengths.h."""
-    lengths = edge_lengths(points, triangles)
-    return lengths[lengths <= 30.0 * np.sort(lengths)[len(lengths) // 2]] if lengths.size else lengths
-
-
-def find_texture_length(surfaces: Sequence[Surface], feature_size: Any) -> float:
-    """The length of edges for a texture of this wavelength; 0 if those of the surfaces will do."""
-    if not (isinstance(feature_size, (int, float, np.number)) and 0 < feature_size < np.inf):
-        return 0.0
-    lengths = np.concatenate([counted_lengths(surface.points, surface.triangles) for surface in surfaces])
-    return texture_length(float(lengths.mean()), float(feature_size))
-
-
-def texture_length(mean: float, feature_size: float) -> float:
-    """The same from the mean edge length."""
-    is_coarse = feature_size < FEWEST_EDGES_PER_WAVELENGTH * mean
-    return feature_size / EDGES_PER_WAVELENGTH if is_coarse else 0.0
+def mean_edge_length(surfaces: Sequence[Any]) -> float:
+    """h of surfaces of the extension; 0 without an edge."""
+    total, number = np.sum([_core.sum_edges(surface) for surface in surfaces], axis=0)
+    return float(total / number) if number else 0.0
 
 
 def refine_as_asked(
@@ -203,8 +181,13 @@ def refine_as_asked(
 ) -> list[RefinedSurface] | None:
     """The surfaces with the keywords of a function; None if they stay as they are."""
     automatic = function == "turing_texture" and isinstance(refine_to, (int, float)) and refine_to == -1
-    length = (find_texture_length(surfaces, feature_size) if automatic
-              else as_length("refine_to", refine_to, zero=True))
+    if not automatic:
+        length = as_length("refine_to", refine_to, zero=True)
+    elif isinstance(feature_size, (int, float, np.number)) and feature_size > 0:
+        mean = mean_edge_length([surface._core for surface in surfaces])
+        length = _core.edge_length_for_features(feature_size, mean)
+    else:
+        length = 0.0
     if length == 0:
         return None
     if any(surface.areas is not None for surface in surfaces):
@@ -214,8 +197,7 @@ def refine_as_asked(
     if automatic:
         triangles = sum(fine.surface.n_faces for fine in refined)
         warn([f"edges were bisected, to {triangles} triangles, because feature_size is {feature_size:g}, "
-              f"less than {FEWEST_EDGES_PER_WAVELENGTH} mean edge lengths (to keep the edges, set "
-              "refine_to to 0)"])
+              f"only {feature_size / mean:g} mean edge lengths (to keep the edges, set refine_to to 0)"])
     return refined
 
 

@@ -83,11 +83,10 @@ from ._scales import scale_filter as _scale_filter
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
 from ._surface import Surface, as_data, as_outside, has_integers, place
+from .paraview._surfaces import ABSENT, cell_flags, cut_strips, polygons_of
 
 __all__: list[str] = []
 __all__ += [*_functions.__all__, "distance", "random_field", "relief", "scale_filter", "surrogates"]
-
-_ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
 
 def _of_data(name: str, results: str) -> Callable[..., Any]:
@@ -267,28 +266,28 @@ def denoise_mesh(
 
 def relief(
     mesh: Any, array: str, height: float, *, mask: str | None = None, return_result: bool = False,
-    progress: Progress = False, result_array_name: str = "ReliefHeight", **keywords: Any,
+    progress: Progress = False, **properties: Any,
 ) -> Any:
     """Raise or carve values on the mesh as relief, for printing.
 
     array: point array (n,) of the values, usually Texture of turing_texture(). mask: point or cell
     array; points, and the points of cells, with a nonzero value have no relief. The method and all other
     keywords are described in help(surfacediffusion.relief). The result has moved points and the point
-    array ReliefHeight (n,), the heights that were used; meshes of triangles are oriented outwards.
+    array ReliefHeight (n,), the heights that were used; polygons are oriented outwards.
     Active point normals are computed again, and cell normals and tangents are dropped. return_result: if
     True, the function returns a pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
     """
-    blocks, results = _find_surfaces(mesh, "relief", keywords), []
+    properties, name = _keywords("relief", properties)
+    blocks, results = _find_surfaces(mesh, "relief", properties), []
     for block in blocks:
         values = block.find("array", array)
         marks = block.find("mask", mask, faces=True)
-        result = _relief(block.surface, values, height, mask=marks, progress=progress, **keywords)
+        result = _relief(block.surface, values, height, mask=marks, progress=progress, **properties)
         results.append(result)
-        block.add(result_array_name, result.heights, False)
+        block.add(name or "ReliefHeight", result.heights, False)
         block.move(result.surface.points)
-        triangles = result.surface.triangles
-        if not block.has_strips and len(triangles) == block.mesh.n_cells:
-            block.mesh.faces = np.insert(triangles, 0, 3, axis=1).ravel()
+        turned = (result.surface.triangles != block.surface.triangles).any(axis=1)
+        block.turn(block.surface._core.faces()[turned])
         normals = block.mesh.point_data.active_normals_name
         if normals is not None:
             block.mesh.point_data[normals] = result.surface._point_normals()
@@ -587,6 +586,15 @@ class _Block:
         if "Tangents" in self.input.point_data:
             self.mesh.point_data.remove("Tangents")
 
+    def turn(self, faces: NDArray[Any]) -> None:
+        """Reverse the polygons of these faces."""
+        cells = np.unique(self.face_cells[faces]) - self.mesh.n_verts - self.mesh.n_lines
+        polygons = type(self.mesh.GetPolys())()
+        polygons.DeepCopy(self.mesh.GetPolys())
+        for cell in cells[cells < polygons.GetNumberOfCells()].tolist():
+            polygons.ReverseCellAtId(cell)
+        self.mesh.SetPolys(polygons)
+
     def with_edges(self, fine: RefinedSurface) -> _Block:
         """The block with the triangles of a finer surface in place of its faces, and with its data."""
         given, cells = self.input, self.face_cells[fine.faces]
@@ -626,44 +634,19 @@ class _Block:
 
 def _find_faces(mesh: pyvista.PolyData) -> tuple[Any, NDArray[np.int64]]:
     """The polygons, and strips as triangles, without hidden and ghost cells; the cell of each."""
-    padded = np.asarray(mesh.faces)
-    before = mesh.n_verts + mesh.n_lines
-    regular = int(padded[0]) + 1 if padded.size else 4
-    cells: Any
-    if padded.size % regular == 0 and (padded[::regular] == regular - 1).all() and regular > 3:
-        faces: Any = padded.reshape(-1, regular)[:, 1:]
-        cells = before + np.arange(len(faces))
-    else:
-        faces, cells, cell = [], [], before
-        for polygon in _split(padded):
-            if len(polygon) > 2:
-                faces.append(polygon)
-                cells.append(cell)
-            cell += 1
-    strips = np.asarray(mesh.strips)
-    if strips.size:
-        faces, cells, cell = list(faces), list(cells), before + mesh.GetNumberOfPolys()
-        for strip in _split(strips):
-            for i in range(len(strip) - 2):
-                faces.append(strip[[i, i + 1 + i % 2, i + 2 - i % 2]])
-                cells.append(cell)
-            cell += 1
-    cells = np.asarray(cells, dtype=np.int64)
-    if "vtkGhostType" in mesh.cell_data:
-        present = (np.asarray(mesh.cell_data["vtkGhostType"])[cells] & _ABSENT) == 0
-        cells = cells[present]
-        faces = (faces[present] if isinstance(faces, np.ndarray)
-                 else [face for face, kept in zip(faces, present) if kept])
-    return faces, cells
-
-
-def _split(padded: NDArray[Any]) -> Iterator[NDArray[Any]]:
-    """The cells of an array [size, point, point, ..., size, ...]."""
-    begin = 0
-    while begin < len(padded):
-        size = int(padded[begin])
-        yield padded[begin + 1 : begin + 1 + size]
-        begin += 1 + size
+    corners, offsets = polygons_of(mesh.GetPolys())
+    sizes = np.diff(offsets)
+    first = mesh.n_verts + mesh.n_lines
+    triangles, of_strips = cut_strips(mesh.GetStrips(), first + len(sizes), mesh.n_points)
+    is_regular = len(triangles) == 0 and len(np.unique(sizes)) == 1 and sizes[0] > 2
+    faces: Any = (corners.reshape(-1, sizes[0]) if is_regular else
+                  [*np.split(corners, offsets[1:-1])[:len(sizes)], *triangles])
+    cells = np.append(first + np.arange(len(sizes)), of_strips)
+    kept = np.append(sizes > 2, np.ones(len(of_strips), dtype=bool))
+    flags = cell_flags(mesh)
+    if flags is not None:
+        kept &= (flags[cells] & ABSENT) == 0
+    return faces[kept] if is_regular else [faces[i] for i in np.flatnonzero(kept)], cells[kept]
 
 
 def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_Block]:
@@ -853,22 +836,18 @@ def _run(
         output, reports = runner.finish(run, inputs, build, progress)
         return (output, reports) if return_result else output
     runner.call(run.update, [given.core for given in inputs], runner.settings, None)
-    steps = [_find_step(time, run, runner.interval) for time in times]
+    steps = [_find_step(time, run, runner) for time in times]
     ordered = sorted(set(steps))
     built = dict(zip(ordered, map(build, runner.visit(run, inputs, ordered, progress))))
     outputs = [built[step][0] for step in steps]
     return (outputs, [built[step][1] for step in steps]) if return_result else outputs
 
 
-def _find_step(time: Any, run: Any, interval: int) -> int:
+def _find_step(time: Any, run: Any, runner: Runner) -> int:
     """The last step at or before a time whose state is published."""
     if not isinstance(time, (int, float, np.number)) or not float(time) >= 0.0:
         raise ValueError(f"times has {shorten(time)}; allowed: numbers, 0 or more")
-    last = run.number_of_steps()
-    step = float(time) / run.time_step() + 1e-9  # it may have lost its last bits
-    if step >= last:
-        return int(last)
-    return max(0, int(step) // interval * interval)
+    return _core.find_step(runner.function, runner.settings, float(time), run.number_of_steps())
 
 
 class _Accessor:

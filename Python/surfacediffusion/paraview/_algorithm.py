@@ -16,10 +16,11 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
+from .._refinement import mean_edge_length
 from ._fields import (
     BY_INDEX, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
 from ._pieces import Stitched, scatter_results, stitch_pieces
-from ._refinement import Refinement, mean_edge_length
+from ._refinement import Refinement
 from ._surfaces import (
     ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure, to_numpy)
 
@@ -354,7 +355,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
 
     def _refine(self, blocks: list[Block], refinement: Refinement, others: list[Block]) -> None:
         automatic = self.own["RefineTo"] == -1.0
-        length, reason = self.find_refinement(mean_edge_length(blocks, self.shapes) if automatic else 0.0)
+        length, reason = self.find_refinement(mean_edge_length(
+            [self.shapes.find(block).core for block in blocks]) if automatic else 0.0)
         limit = self.own["MaximumNumberOfTriangles"]
         if not length > 0.0:
             return

@@ -14,24 +14,9 @@ from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkDataArray, vtkIdTypeArray, vt
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
 from .. import _core
-from .._refinement import counted_lengths, interpolate_points, interpolate_weights
+from .._refinement import interpolate_points, interpolate_weights
 from ._results import copy_component_names, make_array
 from ._surfaces import BETWEEN, GIVEN_CELL, Block, Shapes, to_numpy
-
-
-def mean_edge_length(blocks: list[Block], shapes: Shapes) -> float:
-    """Return the mean length of the distinct edges of each block; 0 if there is none."""
-    lengths, counts = [0.0], [0]
-    for block in blocks:
-        shape = shapes.find(block)
-        triangles = shape.core.triangles()
-        if shape.total_edge_length is None:
-            points = to_numpy(block.input.GetPoints().GetData()).astype(np.float64)
-            found = counted_lengths(points, triangles)
-            shape.total_edge_length, shape.number_of_edges = float(found.sum()), len(found)
-        lengths.append(shape.total_edge_length)
-        counts.append(shape.number_of_edges)
-    return sum(lengths) / sum(counts) if sum(counts) else 0.0
 
 
 class Refinement:
