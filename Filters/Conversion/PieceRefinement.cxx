@@ -36,9 +36,10 @@ bool IsInteger(vtkDataArray* array)
 }
 
 /// The array with a tuple more for each pair of parents. isMask: whether numbers other than 0 mean
-/// that a point is masked. isWeight: whether 0 means that it has no value.
+/// that a point is masked. isWeight: whether 0 means that it has no value. isMark: whether 0 means
+/// that it has no mark.
 vtkSmartPointer<vtkAbstractArray> Interpolate(vtkAbstractArray* from,
-  const std::vector<std::array<Index, 2>>& parents, bool isMask, bool isWeight)
+  const std::vector<std::array<Index, 2>>& parents, bool isMask, bool isWeight, bool isMark)
 {
   const vtkIdType count = from->GetNumberOfTuples();
   const auto more = static_cast<vtkIdType>(parents.size());
@@ -68,9 +69,13 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(vtkAbstractArray* from,
       {
         between = first == 0.0 ? second : first;
       }
-      else if (isWeight && (first == 0.0 || second == 0.0))
+      else if ((isWeight || isMark) && (first == 0.0 || second == 0.0))
       {
         between = 0.0;
+      }
+      else if (isMark && !std::isnan(between))
+      {
+        between = std::min(first, second);
       }
       else if (rounds)
       {
@@ -96,8 +101,10 @@ void InterpolatePointData(vtkPointData* from, vtkIdType points, vtkPointData* to
     {
       continue;
     }
-    const int added = to->AddArray(
-      Interpolate(array, parents, hasName(array, rules.Mask), hasName(array, rules.Weights)));
+    const bool isMark = std::any_of(rules.Marks.begin(), rules.Marks.end(),
+      [&](const std::string& name) { return hasName(array, name); });
+    const int added = to->AddArray(Interpolate(
+      array, parents, hasName(array, rules.Mask), hasName(array, rules.Weights), isMark));
     if (role >= 0)
     {
       to->SetActiveAttribute(added, role);

@@ -230,9 +230,10 @@ NB_MODULE(_core, m)
     .def("seams", &SeamsOf<SurfaceOperators>);
 
   nb::class_<SurfaceFields>(m, "SurfaceFields")
-    .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
-           const nb::object&>(),
-      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "progress"_a.none())
+    .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool, bool,
+           double, const nb::object&>(),
+      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "merges"_a, "tolerance"_a,
+      "progress"_a.none())
     .def(
       "prepare", &SurfaceFields::Prepare, "width"_a, "nu"_a, "unit_variance"_a, "progress"_a.none())
     .def("draw", &SurfaceFields::Draw, "seed"_a, "first"_a, "fields"_a, "progress"_a.none())

@@ -72,7 +72,7 @@ from ._models import (
     ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
 )
 from ._refinement import (
-    ESTIMATING, RefinedSurface, interpolate_points, interpolate_weights, keywords_of, refine_as_asked,
+    ESTIMATING, RULES, RefinedSurface, interpolate_points, keywords_of, refine_as_asked,
 )
 from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
@@ -342,7 +342,7 @@ def distance(
     -1. The field array EffectiveMethod says which method was taken. result_array_name is the prefix of the
     names.
     """
-    blocks = _find_surfaces(mesh, "distance", {})
+    blocks = _find_surfaces(mesh, "distance", properties)
     given = getattr(sources, "points", sources)
     for block in blocks:
         arrays = {"speed": block.find("speed", speed, faces=True),
@@ -376,7 +376,7 @@ def distance(
 def random_field(
     mesh: Any, n: int = 1, *, fwhm: float | None = None, range: float | None = None, nu: int = 1,
     seed: int = 0, normalize: bool = True, mask: str | None = None, roi: str | None = None,
-    progress: Progress = False, result_array_name: str | None = None,
+    progress: Progress = False, result_array_name: str | None = None, **merging: Any,
 ) -> Any:
     """Draw Gaussian random fields of mean 0 and variance 1 on the mesh.
 
@@ -390,7 +390,7 @@ def random_field(
     for block in blocks:
         found = _random_field(
             block.surface, n, fwhm=fwhm, range=range, nu=nu, seed=seed, normalize=normalize,
-            mask=block.find_left_out(mask, roi), progress=progress)
+            mask=block.find_left_out(mask, roi), progress=progress, **merging)
         _add_columns(block, name, found)
     return _rebuild(mesh, iter(blocks))
 
@@ -531,11 +531,9 @@ class _Block:
         if not isinstance(name, str):
             raise ValueError(f"{argument} is {shorten(name)}; allowed: the name of an array")
         if points and name in self.mesh.point_data:
-            if self.refined is not None and argument in ("mask", "fidelity") and name in self.origin.point_data:
-                # What is between a masked or weightless point and another one is so, too.
-                given, parents = np.asarray(self.origin.point_data[name]), self.refined.parents
-                return place(interpolate_points(given, parents, mask=True) if argument == "mask"
-                             else interpolate_weights(given, parents), False)
+            if self.refined is not None and argument in RULES and name in self.origin.point_data:
+                given = np.asarray(self.origin.point_data[name])
+                return place(interpolate_points(given, self.refined.parents, RULES[argument]), False)
             return place(self.mesh.point_data[name], False)
         if faces and name in self.mesh.cell_data:
             return place(np.asarray(self.mesh.cell_data[name])[self.face_cells], True)
@@ -661,7 +659,8 @@ def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_
     refined = refine_as_asked([block.surface for block in blocks], function, refine_to, limit,
                               keywords.get("feature_size", 0.0))
     if refined is not None:
-        blocks = [block.with_edges(fine) for block, fine in zip(blocks, refined)]
+        blocks = [block.with_edges(fine) if len(fine.parents) else block
+                  for block, fine in zip(blocks, refined)]
     return blocks
 
 

@@ -63,6 +63,8 @@ class SameBits(unittest.TestCase):
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(folder.name)
         Path("a.off").write_text(off_text(*polygons()))
+        corners = np.array([[2, 1], [1, 1], [1, 3], [0, 3], [0, 0], [2, 0]])
+        Path("l.off").write_text(off_text(np.column_stack([corners, np.zeros(6)]), [range(6)]))
         given = read_surface("a.off")
         s = sd.Surface(given.points, given.faces)
         self.assertEqual({len(face) for face in s.faces}, {3, 4, 5})
@@ -129,6 +131,7 @@ class SameBits(unittest.TestCase):
             ("spectrum a.off v.npy 8 16 --column 2", sd.spectrum(s, two, [8, 16]).variance),
             ("fwhm a.off v.npy", sd.estimate_fwhm(s, values).columns),
             ("info a.off", [s.area]),
+            ("info l.off", [4.0]),  # of a polygon that is not convex
         ]
         self.assertEqual({line.split()[0] for line, _ in table} | set(ELSEWHERE),
                          {add.__name__[4:].replace("_", "-") for add in COMMANDS})

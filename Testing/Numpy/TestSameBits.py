@@ -135,6 +135,8 @@ class SameBits(unittest.TestCase):
             ("heat", {"values": self.values}, {"IntrinsicDelaunay": True, "TimeStep": 1.0}),
             ("heat", {"values": self.values, "fidelity": 1.0 + self.points[:, 2] ** 2},
              {"FidelityWeight": 0.5, "TimeStep": 1.0}),
+            ("heat", {"values": self.values, **{name: array * 1.0 for name, array in weighted.items()}},
+             {"TimeStep": 1.0, "FidelityWeight": 1.0, "RefineTo": 0.06}),
             ("intrinsic_tv", {"values": self.values}, {}),
             ("intrinsic_tv", {"values": colours, "mask": self.mask}, {"Mode": "SteadyState"}),
             ("intrinsic_tv", {"values": self.values}, {"Mode": "SteadyState", "BlurFWHM": 0.2}),
@@ -169,6 +171,7 @@ class SameBits(unittest.TestCase):
              {"NumberOfRegions": 3, "AutomaticFidelity": False, "FidelityWeight": 2.0}),
             ("segment", {"terms": self.columns, "seeds": np.where(self.mask, 2, 0)},
              {"NumberOfRegions": 3, "StopTolerance": 0.01}),
+            ("segment", {"terms": self.columns[:, :2], "seeds": np.where(self.mask, 2.0, 0.0)}, {"RefineTo": 0.06}),
             ("interpolate", {"values": nan, "mask": some_fixed}, {"ComputeError": True}),
             ("interpolate", {"values": np.where(np.arange(len(nan)) % 40 == 0, nan, np.nan),
                              "fidelity": 1.0 + self.points[:, 2] ** 2},
@@ -201,6 +204,7 @@ class SameBits(unittest.TestCase):
             ("random_field", {}, {"Covariance": "MaternNu3", "Range": 0.8, "Normalize": False}),
             ("distance", {"marked": (self.values > 1.3) * used}, {"Method": "Heat"}),
             ("distance", {"marked": (self.values > 1.3) * used * np.arange(len(x))}, {}),
+            ("distance", {"marked": (self.values > 1.3) * used * 1.0}, {"RefineTo": 0.06}),
             ("distance", {"marked": some, "mask": self.mask}, {"Method": "Exact"}),
             ("distance", {"marked": some, "mask": self.mask}, {"Method": "Eikonal"}),
             ("distance", {"marked": some, "speed": 1.0 + self.points[:, 2] ** 2}, {}),
@@ -310,7 +314,7 @@ class SameBits(unittest.TestCase):
                       "tensor_diffusion": {"CoherenceEnhancing": "Coherent",
                                            "EdgeEnhancing": "EdgeEnhanced"}.get(
                                                properties.get("Model"), "Beltrami")}[function]
-            base = next(iter(arrays), "Normals")
+            base = next((name for name in ("values", "vectors", "terms") if name in arrays), "Normals")
             found = {base + suffix: result.values}
         if function == "segment":
             found = self.regions(result, arrays)

@@ -74,6 +74,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     RESULT_NAME = ""
 
     HAS_POINT_INPUT = False
+    RULES = {1: "mask", 3: "mark", 5: "weight", 6: "mark"}  #: of refinement, by the index of an array
     DEFAULT_CHOICE: Choice | None = None
 
     def __init__(self) -> None:
@@ -360,8 +361,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         limit = self.own["MaximumNumberOfTriangles"]
         if not length > 0.0:
             return
-        mask, weights = (self.choices[k].name if k in self.choices else None for k in (1, 5))
-        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others, mask, weights)
+        rules = {name: rule for k, rule in self.RULES.items()
+                 if k in self.choices and (name := self.choices[k].name) is not None}
+        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others, rules)
         if refinement.longest > 0.0:
             self._of_surfaces.append(
                 f"refinement stopped at edges of {refinement.longest:g}, longer than {length:g}, because "

@@ -406,6 +406,7 @@ class DirectionField(RunFilter):
 
 class Distance(RunFilter):
     HAS_POINT_INPUT = True
+    RULES = {**RunFilter.RULES, 0: "mark"}
 
     def read_points(self, data: Any) -> tuple[Any, list[str]]:
         return read_sources(data)
