@@ -120,7 +120,10 @@ def _with_settings(function: F) -> F:
     for parameter in inspect.signature(function).parameters.values():
         if parameter.kind is not inspect.Parameter.VAR_KEYWORD:
             parameters.append(parameter)
+    own = {parameter.name for parameter in parameters}
     for setting in table.values():
+        if setting.keyword in own:
+            continue
         kind = {"number": "float", "integer": "int", "switch": "bool",
                 "numbers": "array_like"}.get(setting.kind, "")
         if setting.kind == "choice":
@@ -1116,7 +1119,8 @@ def _run_once(
             run.write(0, number, values, source)
 
         outputs = read_outputs(run.outputs(0), write, inputs, runner)
-        found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run)}
+        found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run),
+                 "turned": run.turned_triangles(0)}
         reporter.finish_part()  # last, because the callable may use the run
     warn(found["warnings"])
     return outputs, found

@@ -67,6 +67,27 @@ EdgeLengths MeasureEdgeLengths(const std::vector<double>& lengths, const Reducti
   return { sums[0], sums[1], number - sums[1] };
 }
 
+EdgeLengths MeasureEdgeLengths(const Points& points, const Triangles& triangles)
+{
+  std::vector<std::pair<Index, Index>> edges;
+  edges.reserve(static_cast<std::size_t>(triangles.size()));
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      edges.emplace_back(std::minmax({ triangles(t, a), triangles(t, (a + 1) % 3) }));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<double> lengths;
+  for (const auto& [a, b] : edges)
+  {
+    lengths.push_back((points.row(a) - points.row(b)).norm());
+  }
+  return MeasureEdgeLengths(lengths);
+}
+
 EdgeLengths MeasureEdgeLengths(const TriangleMesh& mesh, const Reduction& processes)
 {
   struct Edge
