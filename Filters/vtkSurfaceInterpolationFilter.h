@@ -48,7 +48,7 @@
  * decomposed; with more, traces follow from determinants. Of few values cross-validation often
  * takes noise for signal: if up to 300 values would be all but held, mu is at least that with the
  * greatest restricted likelihood (G. Wahba, Ann. Statist. 13, 1985). Fewer than three places with
- * values are held. Connected parts have nothing to do with each other: each has its own mu and s.
+ * values are held, and fewer than five on open flat parts. Connected parts have nothing to do with each other: each has its own mu and s.
  *
  * **The mean.** With CorrelationLength 0, constants have no energy. With CorrelationLength 1/kappa,
  * values are measured from their weighted mean, to which u returns beyond that distance from the
