@@ -110,6 +110,24 @@ TEST(InterpolationParts, HaveTheLeastScoreEachWhateverTheirSizes)
   }
 }
 
+TEST(InterpolationParts, AreFreeAtBoundariesAndNaturalWithoutThem)
+{
+  const Surface both = Joined(Icosphere(2), Moved(Disk(6), { 3.0, 0.0, 0.0 }));
+  Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+  const auto fitted = [&](RimCondition rim)
+  {
+    settings.Rim = rim;
+    return Fitted(both, settings);
+  };
+  const Eigen::Index ofBall = Icosphere(2).NumberOfVertices();
+  const Values found = fitted(RimCondition::Automatic);
+  const Values natural = fitted(RimCondition::Natural);
+  EXPECT_EQ(found.topRows(ofBall), natural.topRows(ofBall));
+  const Eigen::Index ofDisk = found.rows() - ofBall;
+  EXPECT_EQ(found.bottomRows(ofDisk), fitted(RimCondition::Free).bottomRows(ofDisk));
+  EXPECT_GT((found - natural).bottomRows(ofDisk).cwiseAbs().maxCoeff(), 0.1);
+}
+
 TEST(InterpolationParts, MayBeThousands)
 {
   constexpr int parts = 2000;
