@@ -27,7 +27,7 @@ folder()
 export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 export CCACHE_BASEDIR="$PWD/build"
 
-cmake --preset build \
+cmake --preset build -D CMAKE_UNITY_BUILD="${CI:+ON}" \
   -D SURFACEDIFFUSION_REQUIRE_TEST_DATA="${CI:+ON}" \
   -D SURFACEDIFFUSION_MESH_DIR="$(folder meshes)" \
   -D SURFACEDIFFUSION_VTK91_PREFIX="$(folder vtk91)" \
