@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 data="$PWD/build/data"
 .ci/fetch-test-data "$data" versions
 export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
-export CCACHE_BASEDIR="$PWD/build"
+export CCACHE_BASEDIR="$PWD/build" CCACHE_DEPEND=1
 mkdir -p build/checks
 
 build()

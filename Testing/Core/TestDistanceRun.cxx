@@ -20,8 +20,6 @@ namespace
 
 using Shape = Testing::Surface;
 
-constexpr double Never = std::numeric_limits<double>::infinity();
-
 std::shared_ptr<const SourceShapes> Shapes(
   const std::vector<Eigen::RowVector3d>& places, std::vector<std::array<Index, 2>> segments = {})
 {

@@ -5,15 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
 namespace
 {
-
-constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// A point with coordinates from -1 to 1.
 Eigen::RowVector3d RandomPoint(std::int64_t seed, Index i)

@@ -19,8 +19,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr double Never = std::numeric_limits<double>::infinity();
-
 /// The area of a component in squares of its longest edge, below which it is refined, and in squares
 /// of the longest edge that stays then.
 constexpr double FewSquares = 40.0;

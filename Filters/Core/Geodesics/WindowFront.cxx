@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace SurfaceDiffusion
 {
@@ -13,8 +12,6 @@ namespace
 {
 
 using Window = GeodesicWindow;
-
-constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// Whether the apex lies beside a window by no more than round-off. atEnd: the distance at the end
 /// of the window there. beside: the vector product of the way through that end with the vector from

@@ -16,7 +16,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr Index LargestSample = 10000;
+constexpr Index LargestSampleOfPairs = 10000;
 
 constexpr double LargestShare = 0.5; ///< of white noise in the estimate
 const double LargestOfDifferences = std::sqrt(1.0 / 3.0); ///< relative to that of sums
@@ -115,7 +115,7 @@ void MeasureResiduals(const FitData& data, NeighbourVariation& variation)
   RobustDeviations single(columns);
   RobustDeviations sums(columns);
   RobustDeviations differences(columns);
-  for (const Index i : data.SampleVertices(LargestSample))
+  for (const Index i : data.SampleVertices(LargestSampleOfPairs))
   {
     const Index j = used[i] ? -1 : NearestNeighbour(i, rings, data);
     if (j < 0 || used[j])

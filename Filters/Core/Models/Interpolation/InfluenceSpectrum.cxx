@@ -13,7 +13,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr double Resolved = 1e-8; ///< difference of eigenvalues from 0 and 1
+constexpr double LeastDifference = 1e-8; ///< difference of eigenvalues from 0 and 1
 constexpr double PriorExponent = 0.1; ///< a of the likelihood
 
 /// W^(1/2) B H^-1 B^T W^(1/2) v.
@@ -286,7 +286,7 @@ double InfluenceSpectrum::Minimiser(Criterion criterion, Eigen::Index column, do
   double high = 0.0;
   for (const auto& [share, weight] : this->Trace)
   {
-    if (share > Resolved && share < 1.0 - Resolved && weight > 0.0)
+    if (share > LeastDifference && share < 1.0 - LeastDifference && weight > 0.0)
     {
       const double own = std::log(share / (1.0 - share)); // of its mu over mu_0
       low = std::min(low, own);
@@ -344,7 +344,7 @@ double InfluenceSpectrum::CostOf(
   double count = 0.0;
   for (const auto& [share, weight] : this->Trace)
   {
-    if (share < 1.0 - Resolved)
+    if (share < 1.0 - LeastDifference)
     {
       logarithms += weight * std::log(Left(share, mu / this->Mu));
       count += weight;
@@ -376,7 +376,7 @@ double InfluenceSpectrum::SlopeOf(
   {
     const double left = Left(share, ratio);
     ofFreedom -= weight * left * (1.0 - left);
-    if (share < 1.0 - Resolved)
+    if (share < 1.0 - LeastDifference)
     {
       count += weight;
       ofLogarithms += weight * (1.0 - left);
