@@ -305,7 +305,7 @@ def heat(
     `fwhm`, `time_step` and `mode` has to be given, since a default width would depend on the mesh; two
     of them are an error, and so are other settings of which one takes the place of another.
 
-    `number_of_time_steps` is 10 by default, as in all models, which suits a look at the states on the
+    `number_of_time_steps` is 10 by default, as in most models, which suits a look at the states on the
     way. With a `fwhm` the time integrator is Exponential, and for a single result
     ``number_of_time_steps=1`` is the fastest and nearly the most accurate, as ``surfacediffusion smooth``
     takes: it solves 6 systems in place of 60, and is within 0.5 % (L2) of the exact result for white
