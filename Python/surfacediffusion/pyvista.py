@@ -361,6 +361,12 @@ def distance(
             numbers = np.arange(len(given) if np.ndim(given) else 1)
             is_rows = np.ndim(given) < 2 and np.asarray(given).dtype != bool
             names, nowhere = np.atleast_1d(given) if is_rows else numbers, -1
+            if block.refined is not None and np.ndim(given) < 2:  # between two sources is one
+                marks = np.zeros(block.origin.n_points, dtype=np.int64)
+                marks[given] = np.arange(1, 1 + np.count_nonzero(given)) if not is_rows else 1 + numbers
+                marks = block.refined.at_points(marks)
+                rows = np.flatnonzero(marks)
+                names = names[marks[rows] - 1] if is_rows else marks[rows] - 1
         found = _nearest_sources(
             block.surface, rows, method=method, progress=progress, **arrays, **properties)
         prefix = result_array_name or ""

@@ -242,7 +242,7 @@ class SameBits(unittest.TestCase):
                     with np.load(folder / f"result{number}.npz") as found:
                         expected = dict(found)
                     self.compare_meshes(function, arrays, properties, expected)
-                    for name in ("polygons", "vtkOriginalCellIds"):
+                    for name in ("active", "polygons", "vtkOriginalCellIds"):
                         expected.pop(name, None)
                     self.compare(function, arrays, properties, expected)
 
@@ -258,7 +258,7 @@ class SameBits(unittest.TestCase):
                 self.assertEqual(taken - given, set())
 
     def compare_meshes(self, function, arrays, properties, expected):
-        """The arrays of PyVista meshes have the names and bits of those of the filter."""
+        """The arrays of PyVista meshes have the names, roles and bits of those of the filter."""
         mesh = pyvista.PolyData(self.points, np.concatenate([[len(face), *face] for face in self.faces]))
         for name, array in arrays.items():
             (mesh.cell_data if len(array) == len(self.faces) else mesh.point_data)[name] = array
@@ -272,6 +272,10 @@ class SameBits(unittest.TestCase):
                 np.testing.assert_array_equal(array, found.points)
             elif name == "polygons":
                 np.testing.assert_array_equal(array, found.faces)
+            elif name == "active":
+                for place, kind, active in map(str.split, array):
+                    data = (found.GetPointData(), found.GetCellData())[int(place)]
+                    self.assertEqual(data.GetAbstractAttribute(int(kind)).GetName(), active)
             elif not name.startswith("history"):
                 np.testing.assert_array_equal(array, found[name], err_msg=name)
 

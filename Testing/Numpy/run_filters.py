@@ -59,6 +59,10 @@ def run(name, properties, indices, arrays):
     padded = vtkIdTypeArray()
     output.GetPolys().ExportLegacyFormat(padded)
     results = {"points": vtk_to_numpy(output.GetPoints().GetData()), "polygons": vtk_to_numpy(padded)}
+    results["active"] = np.array([
+        f"{place} {kind} {data.GetAbstractAttribute(kind).GetName()}"
+        for place, data in enumerate((output.GetPointData(), output.GetCellData())) for kind in range(3)
+        if data.GetAbstractAttribute(kind)], dtype=str)
     for data in (output.GetPointData(), output.GetCellData()):
         for i in range(data.GetNumberOfArrays()):
             if data.GetArrayName(i) not in indices:
