@@ -333,6 +333,27 @@ class OtherCommands(CommandTest):
         self.assertEqual(code, 2)
         self.assertIn("curves.func.gii: the name announces no format for curves", error)
 
+    def test_interpolate_says_that_points_are_the_scanners(self):
+        image = nib.load("lh.surf.gii")
+        c_ras = [5.0, -18.0, 20.0]
+        for axis, number in zip("RAS", c_ras):
+            image.darrays[0].meta[f"VolGeomC_{axis}"] = str(number)
+        nib.save(image, "tkr.surf.gii")
+        nib.freesurfer.write_geometry("lh.white", *(array.data for array in image.darrays[:2]), volume_info={
+            "head": [2, 0, 20], "valid": "1  # volume info valid", "filename": "orig.mgz", "volume": [256] * 3,
+            "voxelsize": [1.0] * 3, "xras": [-1.0, 0.0, 0.0], "yras": [0.0, 0.0, -1.0], "zras": [0.0, 1.0, 0.0],
+            "cras": c_ras})
+        for offset in (np.zeros(3), c_ras):
+            rows = [f"{x},{y},{z},{z}" for x, y, z in POINTS[::5] + offset]
+            Path("values.csv").write_text("x,y,z,height\n" + "\n".join(rows) + "\n")
+            for surface in ("tkr.surf.gii", "lh.white", "lh.surf.gii"):
+                code, out, error = run("interpolate", surface, "values.csv", "out.shape.gii", "--exact", "--json")
+                self.assertEqual(code, 0, error)
+                text = "larger by its c_ras, (5, -18, 20): subtract it from theirs"
+                self.assertEqual(text in error, bool(np.any(offset)) and surface != "lh.surf.gii")
+                self.assertEqual("a shift by (-5" in error, bool(np.any(offset)))
+                self.assertGreater(json.loads(out)["largest_distance"], -1.0)
+
     def test_interpolate_takes_points_beside_the_surface(self):
         places = 1.05 * POINTS[::5]
         rows = [f"{x:.17g},{y:.17g},{z:.17g},{z:.17g}" for x, y, z in places]

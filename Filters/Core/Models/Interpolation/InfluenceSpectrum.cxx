@@ -31,7 +31,7 @@ double Left(double s, double ratio)
 
 } // namespace
 
-InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues& data,
+InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const RepeatedValues& data,
   const Determinant& other, const ProgressMonitor& progress)
   : IsExact(data.Count() <= FewValues)
   , KnowsTrace(other.Mu > 0.0)
@@ -41,11 +41,21 @@ InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues
   if (this->IsExact)
   {
     this->Decompose(fit, data, progress);
-    return;
   }
-  this->Own = { this->Mu, fit.LogDeterminant() };
-  this->ModelTrace(fit, other);
-  this->Sample(fit, data, progress);
+  else
+  {
+    this->Own = { this->Mu, fit.LogDeterminant() };
+    this->ModelTrace(fit, other);
+    this->Sample(fit, data, progress);
+  }
+  // No fit reaches what repeats leave of their mean.
+  const double repeats = data.Repeats.sum();
+  this->Trace.emplace_back(0.0, repeats);
+  this->Count += static_cast<Index>(repeats);
+  for (std::size_t c = 0; c < this->Columns.size(); ++c)
+  {
+    this->Columns[c].emplace_back(0.0, data.Scatter.col(static_cast<Eigen::Index>(c)).sum());
+  }
 }
 
 /// The trace as that of eigenvalues a/(1 + a), a = (1/j^2 + 3/count^2)/c, j = 1, 2, .., of the energy of
@@ -216,6 +226,12 @@ void InfluenceSpectrum::Sample(
       this->Columns.push_back(std::move(measure));
     }
   }
+}
+
+Vector InfluenceSpectrum::Eigenvalues(double mu) const
+{
+  return this->Shares.array() * this->Mu /
+    (this->Shares.array() * this->Mu + (1.0 - this->Shares.array()) * mu);
 }
 
 bool InfluenceSpectrum::Rescale(SmoothFit& fit, double mu) const
