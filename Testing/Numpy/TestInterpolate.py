@@ -183,7 +183,7 @@ class Boundary(unittest.TestCase):
         np.testing.assert_allclose(result.values, [1.0, 3.0, 5.0] * 2, atol=1e-4)
         np.testing.assert_array_equal(np.isinf(result.error), [False] * 3 + [True] * 3)
         self.assertIn("the values leave slopes open with boundary Free: the flattest result is taken, and "
-                      "standard errors are infinite where slopes are open", found)
+                      "standard errors are infinite where slopes are open", found[0])
 
 
 class BadValues(unittest.TestCase):
