@@ -133,8 +133,17 @@ void GeodesicDistance::FindGates(const std::vector<char>& isOnRim)
   this->IsClosed.assign(static_cast<std::size_t>(sides), 0);
   for (Index side = 0; side < sides; ++side)
   {
-    const Index i = mesh.OtherCorner(side, 1);
-    const Index j = mesh.OtherCorner(side, 2);
+    Index i = mesh.OtherCorner(side, 1);
+    Index j = mesh.OtherCorner(side, 2);
+    const auto corners = [&](Index vertex)
+    {
+      return mesh.VertexCornersBegin()[static_cast<std::size_t>(vertex) + 1] -
+        mesh.VertexCornersBegin()[static_cast<std::size_t>(vertex)];
+    };
+    if (corners(j) < corners(i))
+    {
+      std::swap(i, j);
+    }
     bool isOpen = edges.rows() == 0 || uses[static_cast<std::size_t>(edges.data()[side])] > 1;
     if (edges.rows() == 0 && isOnRim[static_cast<std::size_t>(i)] != 0 &&
       isOnRim[static_cast<std::size_t>(j)] != 0)

@@ -63,7 +63,7 @@ void Derivatives::FindBoundary()
           std::swap(i, j);
         }
         int count = 0;
-        for (Index c = begin[i]; c < begin[i + 1]; ++c)
+        for (Index c = begin[i]; c < begin[i + 1] && count < 2; ++c)
         {
           const Index corner = this->Mesh.VertexCorners()[c];
           count += this->Mesh.OtherCorner(corner, 1) == j || this->Mesh.OtherCorner(corner, 2) == j;

@@ -202,9 +202,13 @@ double QuadraticFits::ErrorOfSecondOrder() const
   const auto squareOf = [](const Coefficients& c)
   { return c[2] * c[2] + 2.0 * c[3] * c[3] + c[4] * c[4]; };
   double sum = squareOf(this->Fit(Vector::Ones(count)));
-  for (Eigen::Index k = 0; k < count; ++k)
+  // The sum over all unit vectors is that over an orthonormal basis of what fits can represent.
+  const Eigen::MatrixXd basis = this->Regular.rank() == 5
+    ? Eigen::MatrixXd(this->Regular.householderQ() * Eigen::MatrixXd::Identity(count, 5))
+    : this->Least.matrixU();
+  for (const auto& column : basis.colwise())
   {
-    sum += squareOf(this->Fit(Vector::Unit(count, k)));
+    sum += squareOf(this->Fit(column));
   }
   return std::sqrt(sum);
 }

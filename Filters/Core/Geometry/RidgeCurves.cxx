@@ -76,9 +76,12 @@ private:
     return this->Coordinates.row(this->Mesh.InputVertex()[static_cast<std::size_t>(i)]);
   }
 
-  /// Vertex i, its neighbours and theirs; Scale is the mean length of its edges.
+  /// Vertex i, its neighbours and theirs; Scale is the mean length of its edges. Ways do not lead
+  /// through a vertex of many triangles, which would make all around it near to each other.
   void ListPatch(Index i)
   {
+    constexpr Index manyTriangles = 64;
+    const std::vector<Index>& begin = this->Mesh.VertexCornersBegin();
     ListNeighbours(this->Mesh, i, this->Ring);
     this->Patch = this->Ring;
     this->Patch.push_back(i);
@@ -89,6 +92,11 @@ private:
     }
     for (const Index j : this->Ring)
     {
+      if (static_cast<Index>(this->Ring.size()) > manyTriangles ||
+        begin[j + 1] - begin[j] > manyTriangles)
+      {
+        continue;
+      }
       ListNeighbours(this->Mesh, j, this->NextRing);
       for (const Index k : this->NextRing)
       {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/VertexCurves.h"
 
+#include "Core/Foundation/IndexLists.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -13,17 +15,24 @@ namespace SurfaceDiffusion
 /// The vertices around a vertex, each once.
 void ListNeighbours(const TriangleMesh& mesh, Index i, std::vector<Index>& neighbours)
 {
+  constexpr Index few = 64; // triangles
+  const bool isSmall = mesh.VertexCornersBegin()[i + 1] - mesh.VertexCornersBegin()[i] <= few;
   neighbours.clear();
   for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
   {
     for (const int step : { 1, 2 })
     {
       const Index j = mesh.OtherCorner(mesh.VertexCorners()[c], step);
-      if (j != i && std::find(neighbours.begin(), neighbours.end(), j) == neighbours.end())
+      if (j != i &&
+        !(isSmall && std::find(neighbours.begin(), neighbours.end(), j) != neighbours.end()))
       {
         neighbours.push_back(j);
       }
     }
+  }
+  if (!isSmall)
+  {
+    SortUnique(neighbours, 0);
   }
 }
 

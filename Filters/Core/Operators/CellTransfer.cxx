@@ -54,6 +54,11 @@ void CellTransfer::ListCorners(const std::vector<Index>& cellOfTriangle)
         cellOfTriangle[static_cast<std::size_t>(b)];
     });
   this->Corners.reserve(3 * order.size());
+  Vector factors = this->Mesh.ControlAreas();
+  for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
+  {
+    factors[i] /= this->Mesh.ThirdOfTriangles(i);
+  }
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end)
   {
     const Index cell = cellOfTriangle[static_cast<std::size_t>(order[begin])];
@@ -68,8 +73,7 @@ void CellTransfer::ListCorners(const std::vector<Index>& cellOfTriangle)
       for (int a = 0; a < 3; ++a)
       {
         const Index vertex = this->Mesh.TriangleVertices()(t, a);
-        const double factor =
-          this->Mesh.ControlAreas()[vertex] / this->Mesh.ThirdOfTriangles(vertex);
+        const double factor = factors[vertex];
         auto found = std::find_if(this->Corners.begin() + static_cast<std::ptrdiff_t>(first),
           this->Corners.end(), [&](const Corner& corner) { return corner.Vertex == vertex; });
         if (found == this->Corners.end())

@@ -208,7 +208,8 @@ private:
     this->T.bottomRows(Block) = all.transpose();
     const KrylovBasis::Square own = all.bottomRows(Block);
     this->T.bottomRightCorner(Block, Block) = 0.5 * (own + own.transpose());
-    return this->Orthonormalize(w);
+    constexpr double roundOff = 1e-10; // of the remainder: not orthogonal to the basis
+    return this->Orthonormalize(w, roundOff * own.norm());
   }
 
   /// w -= z (z^T w)
@@ -252,9 +253,9 @@ private:
     return sum;
   }
 
-  /// w = Q R, orthogonal to the basis and to z. Columns that depend on others become random ones,
-  /// with zeros in R. Returns R; w becomes Q.
-  KrylovBasis::Square Orthonormalize(Values& w)
+  /// w = Q R, orthogonal to the basis and to z. Columns that depend on others, or are not longer than
+  /// `least`, become random ones, with zeros in R. Returns R; w becomes Q.
+  KrylovBasis::Square Orthonormalize(Values& w, double least = 0.0)
   {
     KrylovBasis::Square r = KrylovBasis::Square::Identity();
     // Cholesky's factor of W^T W has lost half of the digits; the second round has them all.
@@ -268,7 +269,8 @@ private:
       {
         const double pivot = gram(k, k) - upper.col(k).head(k).squaredNorm();
         constexpr double negligible = 1e-12;
-        if (!(pivot > negligible * gram(k, k)))
+        const double smallest = round == 0 ? least * least : 0.0;
+        if (!(pivot > std::max(negligible * gram(k, k), smallest)))
         {
           dependent.push_back(k);
           continue;

@@ -123,8 +123,12 @@ void MeasureResiduals(const FitData& data, NeighbourVariation& variation)
       continue;
     }
     const CubicResidual ofI(i, rings, data);
+    if (!ofI.Exists())
+    {
+      continue;
+    }
     const CubicResidual ofJ(j, rings, data);
-    if (!ofI.Exists() || !ofJ.Exists())
+    if (!ofJ.Exists())
     {
       continue;
     }

@@ -81,10 +81,11 @@ Values MeanDifference(const TriangleMesh& mesh, const Values& u, const ParallelF
     [&](Index i)
     {
       differences.row(i).setZero();
+      const double third = mesh.ThirdOfTriangles(i);
       for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
       {
         const Index t = mesh.VertexCorners()[c] / 3;
-        const double share = mesh.Shapes()[t].Area() / (9.0 * mesh.ThirdOfTriangles(i));
+        const double share = mesh.Shapes()[t].Area() / (9.0 * third);
         for (int a = 0; a < 3; ++a)
         {
           differences.row(i) +=
