@@ -67,11 +67,12 @@ EFFECTS = {
     ),
     "harmonic_map": (
         Effect("exponent", (1.0, 1.5, 2.0), "Exponent 1 keeps creases, 2 rounds them. "
-               "Colours show the normals.", {"time_step": 0.2}, "block"),
+               "Colours show the normals.", {"time_step": 0.2, "number_of_time_steps": 10}, "block"),
         Effect("number_of_time_steps", (2, 10, 40), "More time makes a noisy mesh smoother.",
                {"move_vertices": True, "time_step": 0.05}, "block"),
         Effect("fidelity_weight", (0.0, 10.0, 100.0), "The weight λ holds the normals, which are shown "
-               "by colours, close to those of the data.", {"time_step": 0.05}, "block"),
+               "by colours, close to those of the data.", {"time_step": 0.05, "number_of_time_steps": 10},
+               "block"),
     ),
     "mumford_shah": (
         Effect("edge_threshold", (0.35, 0.5, 0.7), "Jumps below the threshold are smoothed, jumps above "
@@ -120,8 +121,9 @@ EFFECTS = {
                "less is left of the noise."),
     ),
     "distance": (
-        Effect("method", ("Eikonal", "Heat"), "Distances from three points, in bands: fronts that meet have a "
-               "kink by fast marching and are round by the heat method.", {"sources": [200, 900, 1700]}, "bumps"),
+        Effect("method", ("Exact", "Eikonal", "Heat"), "Distances from three points, in bands: fronts that "
+               "meet have a kink, exactly and by fast marching, and are round by the heat method. Automatic "
+               "is Exact here.", {"sources": [200, 900, 1700]}, "bumps"),
     ),
     "random_field": (
         Effect("fwhm", (0.2, 0.4, 0.8), "Fields of one seed and several widths."),

@@ -50,7 +50,8 @@
  * depends least on the time step.
  *
  * The unit of time in natural units is h^p (h the mean edge length). beta is in 1/h^2, lambda in
- * 1/h^p. Normals with noise of 15 degrees are most accurate after a time of 0.2 to 0.4.
+ * 1/h^p. Normals with noise of 15 degrees are most accurate after a time of 0.2 to 0.4: here the
+ * default of TimeStep is 0.1 and that of NumberOfTimeSteps 3.
  *
  * There is no second-order time integrator, and the sum of A_i u_i is not conserved.
  *

@@ -34,13 +34,13 @@ public:
   vtkTypeMacro(vtkSurfaceDiffusionAlgorithm, vtkSurfaceModelAlgorithm);
 
   /**
-   * The time step, in the unit that Units selects. Positive. Default: 1.
+   * The time step, in the unit that Units selects. Positive. Default: 1, unless the class has another.
    */
   SURFACEDIFFUSION_PROPERTY(TimeStep, double);
 
   /**
    * The number of time steps n. There are n + 1 states, from the initial one on. 0 to 1e9.
-   * Default: 10. If only this number is raised, the next update computes the new steps alone,
+   * Default: 10, likewise. If only this number is raised, the next update computes the new steps alone,
    * unless a run of that length has another solver with Solver Automatic.
    */
   SURFACEDIFFUSION_PROPERTY(NumberOfTimeSteps, int);

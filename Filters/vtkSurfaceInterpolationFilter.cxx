@@ -23,6 +23,8 @@ vtkSurfaceInterpolationFilter::vtkSurfaceInterpolationFilter()
   this->DeclareNumber("EffectiveSmoothing");
   this->DeclareNumber("NumberOfValues");
   this->DeclareNumber("NumberOfFarValues");
+  this->DeclareNumber("MedianDistance");
+  this->DeclareNumber("LargestDistance");
   this->SetNumberOfInputPorts(2);
 }
 

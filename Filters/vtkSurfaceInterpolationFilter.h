@@ -28,7 +28,8 @@
  *   A cell has its value in the middle of its largest triangle.
  *
  * Several values at one place, up to about 1e-4 of an edge, count as their weighted mean; a warning
- * reports it if they differ.
+ * reports it if they differ. What differs at one place is noise, unless most places with repeats have
+ * equal ones, which are copies then.
  * With composite data, each block takes all values.
  *
  * **Input arrays** in addition to those of the superclass (0, the data, 1, the mask, and 2,
@@ -57,10 +58,16 @@
  *
  * **Standard errors.** u is the mean of a Gaussian field with the precision
  * (mu Q + sum w_i b_i b_i^T)/s^2, where Q is the matrix of the energy (F. Lindgren, H. Rue,
- * J. Lindstrom, J. R. Statist. Soc. B 73, 2011): `<name>Error` is its standard deviation at each
- * point, infinite where the values leave the slope open, as one or two and those on a line do on flat
- * pieces with Free. s is NoiseLevel, or estimated from the misfit; NaN if the values leave none. With
- * CorrelationLength the error of the mean m is added, (1 - a_i)^2 Var(m), where a is the fit of
+ * J. Lindstrom, J. R. Statist. Soc. B 73, 2011), and `<name>Error` its standard error at each point:
+ * a band of 1.645 of them on each side holds 90 %. It is infinite where the values leave the slope
+ * open, as one or two and those on a line do on flat pieces with Free. s is NoiseLevel, or estimated
+ * from the misfit and from repeats at one place; NaN if the values leave none. With an estimated s the
+ * standard deviation is multiplied by Student's quantile over the normal one. With up to 300 values and
+ * AutomaticSmoothing it is the root of the mean square of the error over the posterior distribution of
+ * mu, whose prior is uniform in the share of noise (M. Daniels, Canad. J. Statist. 27, 1999). Fields that
+ * are smoother than splines are covered by more. Correlated noise is taken for signal; a warning reports
+ * values without white noise. With CorrelationLength the error of the mean m is added,
+ * (1 - a_i)^2 Var(m), where a is the fit of
  * values that are all 1. On cells it is the mean of the corners, an upper bound.
  *
  * **Boundary.** Natural: du/dn = 0 and d(Laplace u)/dn = 0, so that u becomes flat towards the
@@ -207,6 +214,16 @@ public:
    */
   SURFACEDIFFUSION_NUMBER(NumberOfValues, int);
   SURFACEDIFFUSION_NUMBER(NumberOfFarValues, int);
+  ///@}
+
+  ///@{
+  /**
+   * The median and the largest distance of the points on port 1 from the surface in the last update,
+   * in coordinate units. Without MaximumDistance, a warning reports points beyond five mean edge
+   * lengths, but at least 2 % and at most 10 % of the size of the surface.
+   */
+  SURFACEDIFFUSION_NUMBER(MedianDistance, double);
+  SURFACEDIFFUSION_NUMBER(LargestDistance, double);
   ///@}
 
 protected:

@@ -12,10 +12,20 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 
+def output_of(case):
+    return re.sub(r"(\[NON-XML-CHAR-0x1B\]|\x1b)\[[0-9;]*m", "", case.findtext("system-out") or "")
+
+
+def count_of(case):
+    """How many tests an entry of ctest has: a test of GoogleTest is one for each value of its parameter."""
+    count = re.search(r"^\[==========\] Running (\d+) tests? from", output_of(case), re.MULTILINE)
+    return int(count.group(1)) if count else 1
+
+
 def reasons_of(case):
     """Why the test, or a part of it, was skipped: one reason for each skipped part. A test of ctest has
     parts if it is a program of GoogleTest (on several processes) or of Python's unittest."""
-    output = re.sub(r"(\[NON-XML-CHAR-0x1B\]|\x1b)\[[0-9;]*m", "", case.findtext("system-out") or "")
+    output = output_of(case)
     parts = re.findall(r"\.\.\. skipped ['\"](.*)['\"]$", output, re.MULTILINE)
     # By name, since the lines of several processes may stand between a name and its reason
     why = " ".join(dict.fromkeys(re.findall(r": Skipped\n(.*)", output)))
@@ -50,15 +60,16 @@ def labels_of(path):
                                for label in entry["value"]] for test in tests}
 
 
-def missing_of(needed, names, labels):
-    """The entries of must_run.txt that a run of tests with these names does not fulfil."""
+def missing_of(needed, counts, labels):
+    """The entries of must_run.txt that a run does not fulfil. counts: the number of tests of each entry of
+    ctest, by its name."""
     for entry in lines_of(needed):
         least = re.fullmatch(r"(\w+): (\d+) tests", entry)
         if least is None:
-            if not any(re.fullmatch(entry, name) for name in names):
+            if not any(re.fullmatch(entry, name) for name in counts):
                 yield entry
             continue
-        found = sum(least.group(1) in labels.get(name, []) for name in names)
+        found = sum(count for name, count in counts.items() if least.group(1) in labels.get(name, []))
         if found < int(least.group(2)):
             yield f"{entry}, only {found}"
 
@@ -69,7 +80,8 @@ def main(results, listed, allowed, needed):
     unexpected = [(case.get("name"), reason) for case in cases for reason in reasons_of(case)
                   if not any(name.fullmatch(case.get("name")) and part.search(reason)
                              for name, part in rules)]
-    missing = list(missing_of(needed, [case.get("name") for case in cases], labels_of(listed)))
+    counts = {case.get("name"): count_of(case) for case in cases}
+    missing = list(missing_of(needed, counts, labels_of(listed)))
     for name, reason in unexpected:
         print(f"skipped: {name}: {reason}")
     if unexpected:

@@ -1,8 +1,9 @@
 #!/bin/sh
 # Usage: run-tests.sh [versions | checks]
 # Installs what is needed, builds, and runs every test. The last lines are ctest's summary, with the
-# seconds of processor time per label. In CI (CI is set) it is an error if test data are missing, if
-# a test is skipped that may_be_skipped.txt does not list, and if one of must_run.txt is missing.
+# seconds per label, times the processors that a test asks for. In CI (CI is set) it is an error if test
+# data are missing, if a test is skipped that may_be_skipped.txt does not list, and if one of
+# must_run.txt is missing.
 # With "versions" it fetches other versions of VTK, and runs the tests that build the project with
 # each of them, and with pip, instead: these take as long as all others. With "checks" it runs these,
 # all sanitizers, the fuzzer and the long tests: see run-checks.sh.
@@ -25,9 +26,11 @@ folder()
 # Some tests build the project once more: what does not differ is not compiled again. Paths below the
 # build folder are relative in the cache, so that they do not differ either.
 export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
-export CCACHE_BASEDIR="$PWD/build"
+export CCACHE_BASEDIR="$PWD/build" CCACHE_DEPEND=1
+unity=OFF
+[ -z "${CI:-}" ] || unity=ON # everything is compiled, and once
 
-cmake --preset build \
+cmake --preset build -D SURFACEDIFFUSION_UNITY_BUILD="$unity" \
   -D SURFACEDIFFUSION_REQUIRE_TEST_DATA="${CI:+ON}" \
   -D SURFACEDIFFUSION_MESH_DIR="$(folder meshes)" \
   -D SURFACEDIFFUSION_VTK91_PREFIX="$(folder vtk91)" \

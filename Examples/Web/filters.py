@@ -231,7 +231,7 @@ FILTERS = {entry.name: entry for entry in (
         run_interpolation),
     Filter("harmonic_map", "Normals and vectors: harmonic map", "vectors", (
         Slider("exponent", "Exponent p: 1 keeps creases, 2 smooths evenly", 1, 2, 0.05, 1),
-        Slider("time", "Time", 0.1, 50, 0.1, 10),
+        Slider("time", "Time", 0.1, 50, 0.1, 0.3),
         Slider("move", "Move the points along", 0, 1, 1, 1)), run_normals),
     Filter("denoise_mesh", "The mesh without noise: surface denoising", "none", (
         Slider("noise", "Noise of the points (0: found from the mesh)", 0, 0.01, 0.0001, 0, True),

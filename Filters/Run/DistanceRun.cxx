@@ -15,8 +15,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr double Never = std::numeric_limits<double>::infinity();
-
 } // namespace
 
 void DistanceSettings::Visit(SettingVisitor& visitor)

@@ -7,6 +7,7 @@
 #include "Core/Statistics/MeasuredVertices.h"
 #include "Core/Statistics/NoiseCorrelation.h"
 #include "Core/Statistics/NoiseLevel.h"
+#include "Run/CorrelatedNoise.h"
 #include "Run/DataPreparation.h"
 
 #include <algorithm>
@@ -243,13 +244,9 @@ void ColumnSearch::NoteSmoothData(double estimate, Notes& notes) const
     return;
   }
   const double unit = this->Inputs.Units.ValueUnit;
-  const Word level = Word::Setting("NoiseLevel");
-  Sentence text = level;
-  text << ": the data show no white noise but are smooth over about " << variation.Width
-       << " (full width at half maximum), as correlated noise is, so that its estimate, "
-       << estimate * unit << ", may be too small; without a signal the noise is "
-       << variation.Deviation * unit << " (set " << level << ")";
-  notes.Add(Notes::Smooth, text);
+  notes.Add(Notes::Smooth,
+    DescribeSmoothData(variation.Width, estimate * unit, variation.Deviation * unit,
+      Sentence("set ") << Word::Setting("NoiseLevel")));
 }
 
 void ColumnSearch::LeaveOutConstantParts(VertexRange range)
@@ -375,10 +372,7 @@ FidelityWeights FindFidelity(const ModelInputs& inputs, const FidelityTask& give
       weights.Factors.rightCols(1) = factors;
     }
   }
-  if (weights.Factors.rows() > 0)
-  {
-    result.FidelityFactors = weights.Factors.col(0);
-  }
+  result.FidelityFactors = weights.Factors;
   notes.AppendTo(result);
   return weights;
 }

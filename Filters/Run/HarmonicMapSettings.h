@@ -23,7 +23,12 @@ struct HarmonicMapSettings : DataSettings
   bool MoveVertices = false;
   int MaximumNumberOfRepetitions = 50; ///< of MinimizingMovement; no property
 
-  HarmonicMapSettings() { this->Tolerance = 1e-6; }
+  HarmonicMapSettings()
+  {
+    this->Tolerance = 1e-6;
+    this->TimeStep = 0.1;
+    this->NumberOfTimeSteps = 3;
+  }
 
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;

@@ -4,6 +4,7 @@
 
 #include "Core/Models/Interpolation/InterpolationModel.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Run/CorrelatedNoise.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>
@@ -42,14 +43,8 @@ void WarnOf(Index count, const char* ofOne, const char* ofSeveral, RunResult& re
   }
 }
 
-void WarnOfValues(
-  const KnownValues& known, double maximumDistance, double diagonal, RunResult& result)
+void WarnOfValues(const KnownValues& known, double maximumDistance, RunResult& result)
 {
-  const Sentence farness = DescribeFarPoints("points with values", known.MedianDistance, diagonal);
-  if (maximumDistance == 0.0 && !farness.Words().empty())
-  {
-    result.WarnOnce(farness);
-  }
   if (known.TooFar > 0)
   {
     result.WarnOnce(Sentence() << known.TooFar << (known.TooFar == 1 ? " value is" : " values are")
@@ -165,7 +160,8 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
   visitor.Number({ "NoiseLevel", "values",
                    "The standard deviation of the noise of values with weight 1, in the unit of "
                    "the data, 0 or more. AutomaticSmoothing and the standard errors use it. 0: "
-                   "estimated from what the smoothed result leaves of the values." },
+                   "estimated from what the smoothed result leaves of the values, and from "
+                   "repeated values at one place; correlated noise is not found." },
     this->NoiseLevel, SettingRange::NonNegative());
   visitor.Number({ "Smoothing", "h^2",
                    "mu, with AutomaticSmoothing off: the weight of the energy against the values, "
@@ -178,10 +174,12 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
     this->KeepRange);
   visitor.Switch({ "ComputeError", "",
                    "Add the standard error of the result, which shows where nothing was "
-                   "measured. With CorrelationLength it contains that of the mean. It is NaN "
+                   "measured. A band of 1.645 standard errors on each side holds 90 %: of few "
+                   "values they are longer, by Student's distribution and since the smoothing is "
+                   "not sure. With CorrelationLength they contain that of the mean. They are NaN "
                    "where NoiseLevel is 0 and the values leave nothing to estimate it from, and "
-                   "infinite where they leave the slope open. On cells it is the mean of the "
-                   "corners, an upper bound." },
+                   "infinite where they leave the slope open. On cells they are the means of the "
+                   "corners, upper bounds." },
     this->ComputeError);
   visitor.Choice({ "Boundary", "",
                    "The condition at the boundary of the surface. Automatic: Free, but Natural "
@@ -276,12 +274,12 @@ std::unique_ptr<Model> InterpolationSettings::Make(ModelInputs& inputs, RunResul
     throw InputError("no value is known; allowed: one or more with a weight above 0");
   }
   result.HasMissing = inputs.Data.Missing.any();
-  WarnOfValues(
-    known, this->MaximumDistance, DiagonalOf(inputs.Surface.Points(), inputs.Processes), result);
+  WarnOfValues(known, this->MaximumDistance, result);
   result.Numbers.push_back(Output::OfNumber(
     "NumberOfValues", known.Values.Count(), Combination::Sum, OutputType::Integer));
   result.Numbers.push_back(
     Output::OfNumber("NumberOfFarValues", known.TooFar, Combination::Sum, OutputType::Integer));
+  result.AddNumber("MedianDistance", known.MedianDistance);
   const TriangleMesh& mesh = inputs.Surface.Mesh();
   const CornerWeights isotropic = CotanWeights(mesh, inputs.Parallel);
   CornerWeights coefficients = this->IsDirected()
@@ -299,6 +297,25 @@ std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResu
   const SmoothInterpolation::Result& found = model.Found();
   WarnOfFit(found, result);
   const double unit = state.Units.ValueUnit;
+  const bool findsNoise = !this->Exact && this->AutomaticSmoothing && this->NoiseLevel == 0.0;
+  for (std::size_t c = 0; c < found.Columns.size() && findsNoise; ++c)
+  {
+    // Of white noise a smooth fit leaves more: the residuals of a tenth of the values are no estimate.
+    constexpr Index fewest = 10;
+    constexpr double most = 0.9;
+    const SmoothInterpolation::Column& column = found.Columns[c];
+    const Index count = model.Given().Count();
+    if (count >= fewest && column.Mu > 0.0 && column.DegreesOfFreedom > most * count)
+    {
+      const Sentence text = DescribeSmoothValues(
+        model.Given(), static_cast<int>(c), column.NoiseLevel * unit, unit, state.Surface);
+      if (!text.Words().empty())
+      {
+        result.WarnOnce(text);
+        break;
+      }
+    }
+  }
   if (this->Exact && found.RangeIsOptimal)
   {
     WarnOfMisfit(found, model.State(), unit, result);

@@ -402,6 +402,8 @@ class InterpolationResult(ModelResult):
         The values that were used.
     number_of_far_values : int
         Those that were left out, farther from the surface than `maximum_distance`.
+    median_distance, largest_distance : float
+        Of the points with values from the surface, in the unit of the coordinates.
     """
 
     error: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
@@ -412,6 +414,8 @@ class InterpolationResult(ModelResult):
     noise_level: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
     number_of_values: int = 0
     number_of_far_values: int = 0
+    median_distance: float = 0.0
+    largest_distance: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
 namespace
 {
-
-constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// A surface with its fronts.
 class Fronts

@@ -5,15 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
 namespace
 {
-
-constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// A point with coordinates from -1 to 1.
 Eigen::RowVector3d RandomPoint(std::int64_t seed, Index i)
@@ -416,6 +412,36 @@ TEST(ExactDistance, TheNearestOfSeveralSourcesIsNamed)
     EXPECT_NEAR(alone[source][i], least, 1e-13);
     EXPECT_EQ(cut[i], least <= cutoff ? all[i] : Never);
   }
+}
+
+TEST(ExactDistance, DistancesNearOneSourceAfterAnotherAreThoseOfEach)
+{
+  const Surface s = Icosphere(4);
+  const ExactOn on(s);
+  const auto mesh = std::make_shared<const TriangleMesh>(s.Vertices, s.Faces);
+  const ExactDistance exact(mesh);
+  const double cutoff = 0.3 / mesh->LengthUnit();
+  ExactDistance::Memories memories;
+  for (const Index source : { 5, 100, 6, 5 })
+  {
+    const auto near = exact.FindNear(on.At(source), cutoff, memories);
+    const std::vector<double> all = exact.Find({ on.At(source) }, cutoff).Times;
+    std::size_t reached = 0;
+    for (Index i = 0; i < mesh->NumberOfVertices(); ++i)
+    {
+      const double time = all[static_cast<std::size_t>(i)];
+      if (time < Never)
+      {
+        ASSERT_LT(reached, near.size());
+        EXPECT_EQ(near[reached], std::make_pair(i, time));
+        ++reached;
+      }
+    }
+    EXPECT_EQ(reached, near.size());
+  }
+  EXPECT_EQ(memories.Free.size(), 1u);
+  const ProgressMonitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(exact.FindNear(on.At(5), Never, memories, ProgressMonitor(stop)), Aborted);
 }
 
 TEST(ExactDistance, WorkEndsOnNeedlesAndAtARequest)

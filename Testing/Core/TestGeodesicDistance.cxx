@@ -7,15 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
 namespace
 {
-
-constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// Times per point of the surface, in its unit, from sources at points with start times and labels.
 struct Found

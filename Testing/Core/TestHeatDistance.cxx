@@ -8,15 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
 namespace
 {
 
-constexpr double Never = std::numeric_limits<double>::infinity();
 constexpr double Step = HeatDistance::UsualStep;
 
 /// Distances on the intrinsic Delaunay triangulation of a surface, per point, in its unit.

@@ -319,3 +319,98 @@ TEST(InterpolationField, NinetyPercentOfTruthsAreInsideTheBandOfTheirError)
   EXPECT_LT(result.Error.col(0).minCoeff(), 0.45 * deviation);
   EXPECT_LT(result.Error.col(0).maxCoeff(), 1.1 * deviation);
 }
+
+/// Neither the noise nor the smoothness is given: few values say little of both.
+TEST(InterpolationField, NinetyPercentOfTruthsAreInsideTheBandsOfFewValues)
+{
+  constexpr int fields = 100;
+  constexpr double noise = 0.2; // of values with a deviation of about 0.3
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Index n = mesh.NumberOfVertices();
+  const double kappa = 0.3 * mesh.LengthUnit(); // nearly the prior, without its infinite variance
+  SparseMatrix root(n, n);
+  assembler->TakePattern(root, SerialFor());
+  assembler->Fill(
+    root, kappa * kappa * mesh.ControlAreas(), 1.0, CotanWeights(mesh), nullptr, SerialFor());
+  const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<Index>> factor(root);
+  const double area = mesh.ControlAreas().sum();
+  Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+  settings.ComputeError = true;
+  for (const Index count : { 6, 10, 15, 20, 40, 200 })
+  {
+    double inside = 0.0;
+    double square = 0.0;
+    for (int f = 0; f < fields; ++f)
+    {
+      Eigen::VectorXd truth(n);
+      for (Index i = 0; i < n; ++i)
+      {
+        truth[i] = std::sqrt(mesh.ControlAreas()[i]) * Gaussian(21 + f, 0, i);
+      }
+      truth = (factor.solve(truth) * std::sqrt(4.0 * Pi / area)).eval();
+      truth.array() -= truth.dot(mesh.ControlAreas()) / area;
+      square += truth.cwiseAbs2().dot(mesh.ControlAreas()) / area / fields;
+      ScatteredValues data = ValuesInTriangles(mesh, truth, count, 100 + f);
+      for (Index i = 0; i < count; ++i)
+      {
+        data.Given(i, 0) += noise * Gaussian(300 + f, 0, i);
+      }
+      const Interpolation::Result result = Interpolate(assembler, data, settings);
+      ASSERT_FALSE(result.HasUnknownError);
+      for (Index i = 0; i < n; ++i)
+      {
+        const bool isInside = std::abs(result.U(i, 0) - truth[i]) <= 1.6449 * result.Error(i, 0);
+        inside += isInside ? mesh.ControlAreas()[i] / area / fields : 0.0;
+      }
+    }
+    std::printf(
+      "%d values: %.3f inside, deviation of the fields %.2f\n", count, inside, std::sqrt(square));
+    EXPECT_GT(inside, 0.85) << count;
+    EXPECT_LT(inside, 0.95) << count;
+  }
+}
+
+TEST(InterpolationField, RepeatsAtAPlaceShowTheNoise)
+{
+  constexpr Index places = 20;
+  constexpr double noise = 0.1;
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Values field = Sample(mesh, s, SeaTemperature);
+  Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+  settings.ComputeError = true;
+  for (const Index repeats : { 3, 50 })
+  {
+    ScatteredValues data = ValuesInTriangles(mesh, field, places);
+    ScatteredValues twice = data;
+    const Values at = data.Given;
+    data.Given.resize(places * repeats, 1);
+    data.Weights = Vector::Ones(places * repeats);
+    for (Index i = 0; i < places * repeats; ++i)
+    {
+      data.Given(i, 0) = at(i % places, 0) + noise * Gaussian(31, 0, i);
+      if (i >= places)
+      {
+        data.Places.push_back(data.Places[i % places]);
+      }
+    }
+    const Interpolation::Result result = Interpolate(assembler, data, settings);
+    const double level = result.Columns[0].NoiseLevel;
+    std::printf("%d places x %d values: noise %.4f\n", places, repeats, level);
+    EXPECT_NEAR(level, noise, 3.0 * noise / std::sqrt(2.0 * places * (repeats - 1)));
+    // A copy of each value is no second measurement.
+    for (Index i = 0; i < places; ++i)
+    {
+      twice.Given(i, 0) += noise * Gaussian(32, 0, i);
+    }
+    const double once = Interpolate(assembler, twice, settings).Columns[0].NoiseLevel;
+    twice.Given = twice.Given.replicate(2, 1).eval();
+    twice.Weights = Vector::Constant(2 * places, 0.5);
+    const std::vector<SurfacePoint> again = twice.Places;
+    twice.Places.insert(twice.Places.end(), again.begin(), again.end());
+    EXPECT_NEAR(Interpolate(assembler, twice, settings).Columns[0].NoiseLevel, once, 1e-9);
+  }
+}

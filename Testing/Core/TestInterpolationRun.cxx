@@ -315,6 +315,101 @@ TEST(InterpolationRun, WarnsOfPointsInAnotherUnit)
   }
 }
 
+TEST(InterpolationRun, ReportsHowFarPointsAreAndByWhichShift)
+{
+  const Points places = 25.0 * Icosphere(2).Vertices.topRows(60);
+  for (const Eigen::RowVector3d& by :
+    { Eigen::RowVector3d(30.0, 0.0, 0.0), Eigen::RowVector3d(-10.0, 8.0, 12.0) })
+  {
+    TestSurface s = Icosphere(4);
+    s.Vertices *= 25.0;
+    EXPECT_FALSE(Warns(Fitted(s, SamplesOf(places), Exact()), "from the surface"));
+    const Solution shifted = Fitted(s, SamplesOf(places.rowwise() + by), Exact());
+    EXPECT_TRUE(Warns(shifted, "set MaximumDistance to leave out those beyond it"));
+    EXPECT_TRUE(Warns(shifted, "; a shift by ("));
+    EXPECT_GT(shifted.Numbers.at("MedianDistance")(0, 0), 3.0);
+    EXPECT_GT(shifted.Numbers.at("LargestDistance")(0, 0), 0.9 * by.norm());
+  }
+  const TestSurface s = Icosphere(3);
+  Points one(11, 3);
+  one << s.Vertices.topRows(10), 51.0, 0.0, 0.0;
+  const Solution far = Fitted(s, SamplesOf(one), Exact());
+  EXPECT_TRUE(Warns(far, "1 of 11 points with values is farther than"));
+  EXPECT_FALSE(Warns(far, "a shift by"));
+  EXPECT_NEAR(far.Numbers.at("LargestDistance")(0, 0), 50.0, 0.01);
+  EXPECT_LT(far.Numbers.at("MedianDistance")(0, 0), 1e-12);
+}
+
+TEST(InterpolationRun, AsksForNumbersThatStandForNoValue)
+{
+  const TestSurface s = Icosphere(3);
+  for (const double sentinel :
+    { -10000.0, -9999.0, -999.0, 1e20, 9.969209968386869e36, static_cast<double>(9.96921e36F) })
+  {
+    Fields points = SamplesOf(s.Vertices.topRows(40));
+    auto samples = std::make_shared<PointSamples>(*points.Samples);
+    samples->Given(3, 0) = samples->Given(17, 0) = sentinel;
+    points.Samples = samples;
+    EXPECT_TRUE(Warns(Fitted(s, points, Exact()), "2 values of the points are ")) << sentinel;
+    samples = std::make_shared<PointSamples>(*samples);
+    samples->Given(3, 0) = samples->Given(17, 0) = NaN;
+    points.Samples = samples;
+    EXPECT_TRUE(Fitted(s, points, Exact()).Warnings.empty());
+    Values f = FieldAt(s);
+    f(5, 0) = sentinel;
+    const Solution heat = Heat(s.Vertices, s.Faces, f, HeatSettings());
+    EXPECT_TRUE(Warns(heat, "1 value of Data is ")) << sentinel;
+  }
+  Values depths = 6000.0 * FieldAt(s); // a value among others
+  depths.array() -= 22000.0;
+  depths(5, 0) = -9999.0;
+  EXPECT_FALSE(Warns(Interpolate(s.Vertices, s.Faces, depths, Exact()), "stands for no value"));
+}
+
+TEST(InterpolationRun, WarnsOfCorrelatedNoise)
+{
+  const TestSurface s = Icosphere(4);
+  const Eigen::Index count = 100;
+  Values white(count, 1);
+  Values correlated(count, 1);
+  for (Eigen::Index i = 0; i < count; ++i)
+  {
+    const auto x = s.Vertices.row(17 * i);
+    white(i, 0) = 0.6 * UniformRandom(5, 0, i);
+    correlated(i, 0) = 0.0;
+    for (Eigen::Index j = 0; j < s.Vertices.rows(); ++j) // over some distances of values
+    {
+      const double square = (x - s.Vertices.row(j)).squaredNorm();
+      correlated(i, 0) +=
+        0.02 * std::exp(-0.5 * square / std::pow(0.4, 2)) * (UniformRandom(6, 0, j) - 0.5);
+    }
+  }
+  for (const Eigen::Index few : { count, Eigen::Index(30) })
+  {
+    const auto fitted = [&](const Values& noise, const InterpolationSettings& settings)
+    {
+      Points places(few, 3);
+      for (Eigen::Index i = 0; i < few; ++i)
+      {
+        places.row(i) = s.Vertices.row(17 * i);
+      }
+      Fields fields = SamplesOf(places);
+      auto samples = std::make_shared<PointSamples>(*fields.Samples);
+      samples->Given += noise.topRows(few);
+      fields.Samples = samples;
+      return Fitted(s, fields, settings);
+    };
+    const std::string text = "NoiseLevel: the data show no white noise but are smooth over about ";
+    InterpolationSettings settings;
+    EXPECT_TRUE(Warns(fitted(correlated, settings), text)) << few;
+    EXPECT_TRUE(Warns(fitted(correlated, settings), "(set NoiseLevel, or turn Exact on")) << few;
+    EXPECT_FALSE(Warns(fitted(white, settings), text)) << few;
+    EXPECT_FALSE(Warns(fitted(correlated, Exact()), text));
+    settings.NoiseLevel = 0.1;
+    EXPECT_FALSE(Warns(fitted(correlated, settings), text));
+  }
+}
+
 TEST(InterpolationRun, ReportsEachKindOfBadValuesInOneLine)
 {
   const TestSurface s = Icosphere(2);

@@ -26,6 +26,7 @@ vtkSmartPointer<vtkHarmonicMapFilter> MakeFilter(vtkDataObject* data)
   auto filter = vtkSmartPointer<vtkHarmonicMapFilter>::New();
   filter->SetInputDataObject(data);
   filter->SetTimeStep(0.05);
+  filter->SetNumberOfTimeSteps(10);
   return filter;
 }
 

@@ -48,9 +48,9 @@ fi
 LD_PRELOAD="$preload" environment/bin/python -c "
 import surfacediffusion as s
 print('installed', s.__version__)"
-environment/bin/pip install --quiet tqdm argcomplete mypy
+environment/bin/pip install --quiet --no-compile tqdm argcomplete mypy
 # For the tests of files and of PyVista, whose VTK is that of PyPI
-environment/bin/pip install --quiet "surfacediffusion[io,pyvista]" --find-links dist
+environment/bin/pip install --quiet --no-compile "surfacediffusion[io,pyvista]" --find-links dist
 
 # The same with other packages for surfaces, which that environment must do without
 if [ -d "$wheels/../peers" ]; then
@@ -59,11 +59,11 @@ if [ -d "$wheels/../peers" ]; then
   for site in environment/lib/python*/site-packages; do
     echo "$folder/$site" > "peers/${site#environment/}/environment.pth"
   done
-  peers/bin/pip install --quiet --no-deps "$wheels"/../peers/*.whl "$wheels"/../brains/nilearn-*.whl
+  peers/bin/pip install --quiet --no-compile --no-deps "$wheels"/../peers/*.whl "$wheels"/../brains/nilearn-*.whl
 fi
 
 rm -rf system
 "${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages system
 system/bin/pip install --quiet --no-deps dist/*.whl
-system/bin/pip install --quiet --no-deps --find-links "$wheels/.." \
+system/bin/pip install --quiet --no-compile --no-deps --find-links "$wheels/.." \
   pyvista==0.44.2 pooch scooby platformdirs typing_extensions

@@ -11,7 +11,7 @@ unset PYTHONPATH LD_LIBRARY_PATH PV_PLUGIN_PATH
 export CCACHE_BASEDIR="$folder/build" # see Testing/run-tests.sh
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 
-(cd "$source" && cmake --preset package -B "$folder/build" && cmake --build "$folder/build")
+(cd "$source" && cmake --preset package -B "$folder/build" -D SURFACEDIFFUSION_UNITY_BUILD="${UNITY_BUILD:-OFF}" && cmake --build "$folder/build")
 rm -f "$folder"/build/*.deb
 (cd "$folder/build" && cpack)
 deb=$(ls "$folder"/build/*.deb)

@@ -19,6 +19,7 @@ rm -rf "$folder"
 "${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages "$folder"
 PIP_CONFIG_FILE=/dev/null "$folder/bin/pip" install --config-settings=build-dir="$folder/build" \
   --config-settings=cmake.define.SURFACEDIFFUSION_WARNINGS_AS_ERRORS=ON \
+  --config-settings=cmake.define.SURFACEDIFFUSION_UNITY_BUILD="${UNITY_BUILD:-OFF}" \
   --no-index --find-links "$SURFACEDIFFUSION_WHEEL_DIR" "$source"
 cd "$folder"
 bin/python - <<'SCRIPT'

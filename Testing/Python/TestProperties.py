@@ -79,7 +79,8 @@ DEFAULTS = {
         "ColorModel": "RGB", "ChromaWeight": 0.2, "ChromaticityExponent": 1.0,
         "ChromaticityWeight": 1.0, "LinearLight": False},
     "vtkHarmonicMapFilter": {
-        **DATA, "TimeIntegrator": "FirstOrder", "InitialFill": "Mean", "Exponent": 1.0, "Beta": 1e-6, "Scheme": "TangentPlane",
+        **DATA, "TimeIntegrator": "FirstOrder", "TimeStep": 0.1, "NumberOfTimeSteps": 3,
+        "InitialFill": "Mean", "Exponent": 1.0, "Beta": 1e-6, "Scheme": "TangentPlane",
         "ConsistentReaction": False, "ProjectToSphere": True, "LineField": False,
         "UseAsNormals": True, "MoveVertices": False},
     "vtkMumfordShahFilter": {

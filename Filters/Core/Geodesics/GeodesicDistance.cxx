@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <queue>
 #include <utility>
@@ -14,8 +13,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// The angle above 2 pi from which on a vertex is a saddle, in radians. On fine surfaces, whose angles
 /// differ less, ways along edges are mostly those of the triangulation.

@@ -5,11 +5,15 @@
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Geodesics/FrontShapes.h"
 
+#include <limits>
 #include <memory>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
+
+/// The time of an arrival that there is not.
+constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// A vertex that a front reaches first. A source within a triangle has three of these.
 struct FrontSource

@@ -136,7 +136,8 @@ void KeepShortestWindows(
   {
     return;
   }
-  auto& [kept, later] = buffers;
+  std::vector<Window>& kept = buffers.Kept;
+  std::vector<Window>& later = buffers.Later;
   kept.clear();
   later.clear();
   const auto insert = [&](const Window& w)

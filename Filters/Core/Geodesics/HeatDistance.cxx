@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -16,8 +15,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// Heat below this has lost digits.
 constexpr double LeastHeat = 1e-290;

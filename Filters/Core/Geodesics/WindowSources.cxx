@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace SurfaceDiffusion
 {
@@ -17,7 +16,6 @@ namespace
 using Window = GeodesicWindow;
 using Eigen::Vector2d;
 
-constexpr double Never = std::numeric_limits<double>::infinity();
 const double Pi = std::acos(-1.0);
 
 /// Points nearer to a vertex than this part of the shortest edge there are at the vertex.
@@ -32,7 +30,7 @@ double Entry(const std::array<double, 3>& at, Index corner)
 }
 
 /// A point of a triangle in the frame of an edge: the corner opposite is 3 t + a as the edge is.
-Vector2d Place(const EdgeFrames::Frame& frame, const std::array<double, 3>& at, Index edge)
+Vector2d PlaceOn(const EdgeFrames::Frame& frame, const std::array<double, 3>& at, Index edge)
 {
   const double apex = Entry(at, edge), end = Entry(at, edge + 2);
   return { end * frame.Length + apex * frame.X, std::max(0.0, apex) * frame.Y };
@@ -70,7 +68,7 @@ void WindowFront::AddPoint(Index triangle, const std::array<double, 3>& at, Inde
   const auto placeFrom = [&](Index corner)
   {
     const Index edge = CornerAfter(corner, 2);
-    return Place(this->Frames[edge], at, edge);
+    return PlaceOn(this->Frames[edge], at, edge);
   };
   const EdgeFrames::Frame& around = this->Frames[nearest];
   const Vector2d place = placeFrom(nearest);
@@ -80,7 +78,7 @@ void WindowFront::AddPoint(Index triangle, const std::array<double, 3>& at, Inde
     this->Reach(this->VertexAt(nearest), distance, source, {});
     return;
   }
-  // Ways from a point on an edge cannot be told apart there, and start behind it.
+  // Ways from a point on an edge have no order there, and start behind it.
   this->LeavePoint(triangle, at, source, -1);
   for (Index edge = 3 * triangle; edge < 3 * triangle + 3; ++edge)
   {
@@ -110,11 +108,11 @@ void WindowFront::LeavePoint(
   for (Index edge = 3 * triangle; edge < 3 * triangle + 3; ++edge)
   {
     const Index before = CornerAfter(edge, 2);
-    this->ReachFrom(edge, Place(this->Frames[before], at, before), source);
+    this->ReachFrom(edge, PlaceOn(this->Frames[before], at, before), source);
     if (behind >= 0 ? edge != behind : !this->IsOnEdge(edge, at))
     {
       const EdgeFrames::Frame& frame = this->Frames[edge];
-      const Vector2d place = Place(frame, at, edge);
+      const Vector2d place = PlaceOn(frame, at, edge);
       Window w{ 0.0, frame.Length, place[0], -place[1], 0.0, 0.0, 0.0, source, false, false };
       w.AtBegin = w.At(w.Begin);
       w.AtEnd = w.At(w.End);
@@ -129,7 +127,7 @@ void WindowFront::AddStrips(const SourcePiece& piece, Index source)
   {
     // The corner at the begin of the edge
     const EdgeFrames::Frame& frame = this->Frames[edge];
-    const Vector2d from = Place(frame, piece.From, edge), to = Place(frame, piece.To, edge);
+    const Vector2d from = PlaceOn(frame, piece.From, edge), to = PlaceOn(frame, piece.To, edge);
     const Vector2d along = to - from;
     const double length = along.norm(), share = -from.dot(along) / (length * length);
     if (!(length > 0.0))

@@ -17,7 +17,7 @@ namespace
 /// Normals with less support are outliers. The flat side of a corner of a cube has about 0.3.
 constexpr double LeastSupport = 0.15;
 /// e of FitLinearNormals(): gradients across one row of triangles are not determined by the fit.
-constexpr double Ridge = 0.05;
+constexpr double RidgeOfFit = 0.05;
 
 double RangeFactor(const NormalFilterSettings& settings)
 {
@@ -139,12 +139,12 @@ SURFACEDIFFUSION_ANY_VECTORS void AddNeighbours(const Neighbours* neighbours, st
 Eigen::RowVector3d Solve(const LinearFits& fits, int l)
 {
   const Eigen::RowVector3d v(fits.V[0][l], fits.V[1][l], fits.V[2][l]);
-  const double ridge = Ridge * (static_cast<double>(fits.XX[l]) + fits.YY[l]);
+  const double ridge = RidgeOfFit * (static_cast<double>(fits.XX[l]) + fits.YY[l]);
   if (!(ridge > 0.0))
   {
     return v;
   }
-  // in the unit of length in which the mean square of the offsets is 1 / Ridge
+  // in the unit of length in which the mean square of the offsets is 1 / RidgeOfFit
   const double unit = std::sqrt(ridge / fits.W[l]);
   const double x = fits.X[l] / unit / fits.W[l];
   const double y = fits.Y[l] / unit / fits.W[l];

@@ -23,7 +23,7 @@ constexpr double WallCosine = 0.866;
 /// Longer directions are those of edges.
 constexpr double LongestOnFaces = 1.05;
 
-Vector3 PlaceOf(const Points& points, Index vertex)
+Vector3 PositionOf(const Points& points, Index vertex)
 {
   return points.row(vertex).transpose();
 }
@@ -46,7 +46,7 @@ double FindSmallestWall(const Points& before, const Points& after, const Triangl
       {
         return;
       }
-      const Vector3 from = PlaceOf(after, i);
+      const Vector3 from = PositionOf(after, i);
       const Vector3 ray = -directions.row(i).transpose() / length;
       const Vector3 inverse = ray.cwiseInverse();
       double& wall = walls[static_cast<std::size_t>(i)];
@@ -79,9 +79,9 @@ double FindSmallestWall(const Points& before, const Points& after, const Triangl
           {
             return;
           }
-          const Vector3 a = PlaceOf(after, faces(t, 0));
-          const Vector3 b = PlaceOf(after, faces(t, 1));
-          const Vector3 c = PlaceOf(after, faces(t, 2));
+          const Vector3 a = PositionOf(after, faces(t, 0));
+          const Vector3 b = PositionOf(after, faces(t, 1));
+          const Vector3 c = PositionOf(after, faces(t, 2));
           const Vector3 normal = (b - a).cross(c - a);
           const double along = normal.dot(ray);
           if (!(along > 0.0))

@@ -17,8 +17,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr Index None = Aggregates::None;
-
 /// 4/3 over the largest eigenvalue of D^-1 A, which is 3/2 on a regular triangulation.
 constexpr double Omega = 8.0 / 9.0;
 
@@ -29,7 +27,7 @@ Vector CoarseKernel(const Aggregates& aggregates, const Vector& kernel)
   Vector coarse = Vector::Zero(aggregates.Count);
   for (Index i = 0; i < static_cast<Index>(kernel.size()); ++i)
   {
-    if (of[i] != None)
+    if (of[i] != Aggregates::None)
     {
       coarse[of[i]] += kernel[i] * kernel[i];
     }
@@ -45,7 +43,7 @@ auto RestrictionColumn(const SparseMatrix& matrix, const Aggregates& aggregates,
   {
     const std::vector<Index>& of = aggregates.Of;
     const Buffer<char>& strong = aggregates.Strong;
-    if (of[i] == None)
+    if (of[i] == Aggregates::None)
     {
       return;
     }

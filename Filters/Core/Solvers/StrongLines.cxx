@@ -8,13 +8,6 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-constexpr Index None = -1;
-
-} // namespace
-
 void StrongLines::Clear()
 {
   this->Row.clear();

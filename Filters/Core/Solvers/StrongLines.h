@@ -32,6 +32,7 @@ class StrongLines
 public:
   static constexpr double MinimumStrength = 0.27;
   static constexpr double MinimumShare = 0.83;
+  static constexpr Index None = -1; ///< in place of a vertex
 
   explicit StrongLines(const ParallelFor& parallel)
     : Parallel(parallel)

@@ -10,7 +10,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr Index None = -1;
 // Of entries that stand out to others; no ratio that regular meshes have.
 constexpr double ClearRatio = 1.37;
 

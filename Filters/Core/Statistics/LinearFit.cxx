@@ -16,7 +16,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr double RoundOff = 1e-13; ///< relative
+constexpr double ShareOfRoundOff = 1e-13; ///< relative
 
 using PlaneCoordinates = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
@@ -150,7 +150,7 @@ Eigen::RowVectorXd RoundOffOf(const FitData& data)
       largest = largest.cwiseMax(data.Given.row(i).cwiseAbs());
     }
   }
-  return RoundOff * largest;
+  return ShareOfRoundOff * largest;
 }
 
 LinearFit FitAround(Index vertex, int edges, Rings& rings, const FitData& data)

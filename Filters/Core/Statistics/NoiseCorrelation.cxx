@@ -16,7 +16,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr Index LargestSample = 10000;
+constexpr Index LargestSampleOfPairs = 10000;
 
 constexpr double LargestShare = 0.5; ///< of white noise in the estimate
 const double LargestOfDifferences = std::sqrt(1.0 / 3.0); ///< relative to that of sums
@@ -115,7 +115,7 @@ void MeasureResiduals(const FitData& data, NeighbourVariation& variation)
   RobustDeviations single(columns);
   RobustDeviations sums(columns);
   RobustDeviations differences(columns);
-  for (const Index i : data.SampleVertices(LargestSample))
+  for (const Index i : data.SampleVertices(LargestSampleOfPairs))
   {
     const Index j = used[i] ? -1 : NearestNeighbour(i, rings, data);
     if (j < 0 || used[j])
@@ -191,16 +191,19 @@ void MeasureValues(const FitData& data, NeighbourVariation& variation)
     squares += data.IsMissing(i) ? 0.0 : (data.Given.row(i) - mean).squaredNorm();
   }
   variation.Deviation = std::sqrt(squares / (count * static_cast<double>(data.Given.cols())));
-  // Correlation exp(-2 ln 2 d^2 / width^2) at distance d, see estimate_fwhm() in Python.
-  const double uncorrelated = (squareDifferences / edges) / (2.0 * squares / count);
-  if (uncorrelated > 0.0 && uncorrelated < 1.0)
-  {
-    variation.Width =
-      std::sqrt(2.0 * std::log(2.0) * (squareLengths / edges) / -std::log1p(-uncorrelated));
-  }
+  variation.Width =
+    WidthOfCorrelation(squareDifferences / edges, squares / count, squareLengths / edges);
 }
 
 } // namespace
+
+double WidthOfCorrelation(double squareDifference, double variance, double squareDistance)
+{
+  const double uncorrelated = squareDifference / (2.0 * variance); // see estimate_fwhm() in Python
+  return uncorrelated > 0.0 && uncorrelated < 1.0
+    ? std::sqrt(2.0 * std::log(2.0) * squareDistance / -std::log1p(-uncorrelated))
+    : 0.0;
+}
 
 bool NeighbourVariation::IsSmooth() const
 {

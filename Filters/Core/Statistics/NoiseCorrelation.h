@@ -43,6 +43,11 @@ struct NeighbourVariation
   bool IsSmooth() const;
 };
 
+/// The full width at half maximum of the Gaussian kernel that gives white noise this mean square of
+/// differences at this mean square of distances, the correlation exp(-2 ln 2 d^2/width^2) at the
+/// distance d; 0 if there is no correlation.
+double WidthOfCorrelation(double squareDifference, double variance, double squareDistance);
+
 /// Measures it at the varying vertices, 10,000 of them at most. Root mean square over the columns.
 /// ofLinearFits: NoiseEstimate::BetweenNeighbours. points: see EstimateNoise().
 NeighbourVariation MeasureVariation(const Assembler& assembler,

@@ -17,7 +17,7 @@ namespace
 {
 
 constexpr int NumberOfStarts = 8;
-constexpr double RoundOff = 1e-12; ///< relative difference of equal values
+constexpr double EqualValues = 1e-12; ///< relative difference of equal values
 constexpr int IterationsOfStarts = 4; ///< which show the best one
 constexpr int MaximumNumberOfIterations = 50;
 constexpr double Settled = 1e-4; ///< relative decrease of the sum of squares
@@ -38,7 +38,7 @@ public:
     for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
     {
       const double smallest =
-        this->Counts(i) ? std::pow(RoundOff, 2) * data.Given.row(i).squaredNorm() : 0.0;
+        this->Counts(i) ? std::pow(EqualValues, 2) * data.Given.row(i).squaredNorm() : 0.0;
       this->SmallestDistance = std::max(this->SmallestDistance, smallest);
     }
   }

@@ -14,7 +14,7 @@ namespace
 
 using Number = std::pair<double, double>; ///< and its weight
 
-constexpr double RoundOff = 1e-12; ///< relative difference of equal numbers
+constexpr double EqualNumbers = 1e-12; ///< relative difference of equal numbers
 
 /// Takes another number into a mean.
 void Add(const Number& number, Number& mean)
@@ -49,7 +49,7 @@ std::vector<Number> DifferentNumbers(const std::vector<Number>& numbers)
   std::vector<std::size_t> rank(numbers.size(), 0);
   for (std::size_t i = 1; i < numbers.size(); ++i)
   {
-    const bool differs = numbers[i].first - numbers[i - 1].first > RoundOff * magnitude;
+    const bool differs = numbers[i].first - numbers[i - 1].first > EqualNumbers * magnitude;
     rank[i] = rank[i - 1] + (differs ? 1 : 0);
   }
   return Grouped(numbers, [&](std::size_t i) { return rank[i]; });

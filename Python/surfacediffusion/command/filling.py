@@ -10,7 +10,7 @@ from .. import interpolate as fit
 from ..files import new_data
 from ..files.content import check_output_folder
 from . import common, inputs
-from .report import number
+from .report import number, number_text
 from .stages import (
     change_data, columns_of_arrays, columns_of_missing, given, read_surface_for_output, solid)
 
@@ -102,9 +102,13 @@ def interpolate(arguments, report):
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
             compute_error=errors is not None, progress=progress, **given(smoothing=arguments.smoothing),
             **common.merging(arguments))
+    if places is not None and surface.center.any() and result.median_distance > result.mean_edge_length:
+        report.warn(f"{surface.path} has FreeSurfer's coordinates, and points in the scanner's are larger by its "
+                    f"c_ras, ({', '.join(map(number_text, surface.center))}): subtract it from theirs")
     rows = zip(result.smoothing, result.misfit, result.degrees_of_freedom, result.noise_level)
     report.facts.update(
         values=result.number_of_values, far_values=result.number_of_far_values,
+        median_distance=result.median_distance, largest_distance=result.largest_distance,
         columns=[{"name": name, "smoothing": number(mu), "misfit": number(misfit),
                   "degrees_of_freedom": number(freedom), "noise": number(noise)}
                  for name, (mu, misfit, freedom, noise) in zip(names, rows)])

@@ -55,6 +55,21 @@ class SurfaceFile:
         found = [shape for word, shape in _SHAPES.items() if word in words[1:]]
         return found[0] if found else ""
 
+    @property
+    def center(self):
+        """FreeSurfer's c_ras (3,), by which the scanner's coordinates of a point are larger than those of the
+        surface; zeros if the file does not have it."""
+        given = [0, 0, 0]
+        if self.kind == "freesurfer":
+            given = (self.image or {}).get("cras", given)
+        elif self.kind == "gifti":
+            meta = self.image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")[0].meta
+            given = [meta.get(f"VolGeomC_{axis}", 0) for axis in "RAS"]
+        try:
+            return np.array(given, dtype=float)
+        except ValueError:
+            return np.zeros(3)
+
     def beside(self):
         """The colours of the vertices (n, 3) of uint8, or None, and the names of what else the file has
         beside points, faces and normals."""

@@ -4,6 +4,7 @@
 // SmoothInterpolation of values that hold.
 
 #include "Core/Models/Interpolation/SmoothInterpolationWork.h"
+#include "Core/Statistics/StudentFactor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +57,8 @@ void SmoothInterpolation::FitExactly(
     const double free = std::max<double>(1.0, rows.Count() - work.Determined);
     for (Eigen::Index c = 0; c < columns; ++c)
     {
-      const double scale = energies[c] / free;
+      const double factor = StudentFactor(free);
+      const double scale = factor * factor * energies[c] / free;
       for (Eigen::Index i = 0; i < u.rows(); ++i)
       {
         result.Error(i, c) =

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/HessianEnergy.h"
 
-#include "Core/Models/Interpolation/ResolvedShare.h"
+#include "Core/Models/Interpolation/NeedleShare.h"
 
 #include <algorithm>
 #include <array>
@@ -80,7 +80,7 @@ struct PlaneTriangle
   explicit PlaneTriangle(const TriangleMesh::Shape& s)
     : Area(s.Area())
   {
-    const double share = std::sqrt(ResolvedShare(s));
+    const double share = std::sqrt(NeedleShare(s));
     Corners << 0.0, 0.0, s.Length, 0.0, s.X, s.Y;
     for (int a = 0; a < 3; ++a)
     {

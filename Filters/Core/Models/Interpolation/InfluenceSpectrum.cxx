@@ -13,7 +13,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr double Resolved = 1e-8; ///< difference of eigenvalues from 0 and 1
+constexpr double LeastDifference = 1e-8; ///< difference of eigenvalues from 0 and 1
 constexpr double PriorExponent = 0.1; ///< a of the likelihood
 
 /// W^(1/2) B H^-1 B^T W^(1/2) v.
@@ -31,7 +31,7 @@ double Left(double s, double ratio)
 
 } // namespace
 
-InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues& data,
+InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const RepeatedValues& data,
   const Determinant& other, const ProgressMonitor& progress)
   : IsExact(data.Count() <= FewValues)
   , KnowsTrace(other.Mu > 0.0)
@@ -41,11 +41,21 @@ InfluenceSpectrum::InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues
   if (this->IsExact)
   {
     this->Decompose(fit, data, progress);
-    return;
   }
-  this->Own = { this->Mu, fit.LogDeterminant() };
-  this->ModelTrace(fit, other);
-  this->Sample(fit, data, progress);
+  else
+  {
+    this->Own = { this->Mu, fit.LogDeterminant() };
+    this->ModelTrace(fit, other);
+    this->Sample(fit, data, progress);
+  }
+  // No fit reaches what repeats leave of their mean.
+  const double repeats = data.Repeats.sum();
+  this->Trace.emplace_back(0.0, repeats);
+  this->Count += static_cast<Index>(repeats);
+  for (std::size_t c = 0; c < this->Columns.size(); ++c)
+  {
+    this->Columns[c].emplace_back(0.0, data.Scatter.col(static_cast<Eigen::Index>(c)).sum());
+  }
 }
 
 /// The trace as that of eigenvalues a/(1 + a), a = (1/j^2 + 3/count^2)/c, j = 1, 2, .., of the energy of
@@ -218,6 +228,12 @@ void InfluenceSpectrum::Sample(
   }
 }
 
+Vector InfluenceSpectrum::Eigenvalues(double mu) const
+{
+  return this->Shares.array() * this->Mu /
+    (this->Shares.array() * this->Mu + (1.0 - this->Shares.array()) * mu);
+}
+
 bool InfluenceSpectrum::Rescale(SmoothFit& fit, double mu) const
 {
   constexpr double most = 1e6;
@@ -286,7 +302,7 @@ double InfluenceSpectrum::Minimiser(Criterion criterion, Eigen::Index column, do
   double high = 0.0;
   for (const auto& [share, weight] : this->Trace)
   {
-    if (share > Resolved && share < 1.0 - Resolved && weight > 0.0)
+    if (share > LeastDifference && share < 1.0 - LeastDifference && weight > 0.0)
     {
       const double own = std::log(share / (1.0 - share)); // of its mu over mu_0
       low = std::min(low, own);
@@ -344,7 +360,7 @@ double InfluenceSpectrum::CostOf(
   double count = 0.0;
   for (const auto& [share, weight] : this->Trace)
   {
-    if (share < 1.0 - Resolved)
+    if (share < 1.0 - LeastDifference)
     {
       logarithms += weight * std::log(Left(share, mu / this->Mu));
       count += weight;
@@ -376,7 +392,7 @@ double InfluenceSpectrum::SlopeOf(
   {
     const double left = Left(share, ratio);
     ofFreedom -= weight * left * (1.0 - left);
-    if (share < 1.0 - Resolved)
+    if (share < 1.0 - LeastDifference)
     {
       count += weight;
       ofLogarithms += weight * (1.0 - left);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Models/Interpolation/RepeatedValues.h"
 #include "Core/Models/Interpolation/SmoothFit.h"
 
 #include <utility>
@@ -16,7 +17,8 @@ namespace SurfaceDiffusion
 ///   s mu_0 / (s mu_0 + (1 - s) mu),
 /// so that sums of squares of residuals and degrees of freedom are known at every mu from one
 /// factorisation. With few values the matrix is computed and decomposed. With many, the measures of the
-/// data follow by Lanczos' method (G. Golub, U. von Matt, J. Comput. Graph. Statist. 6, 1997). The trace
+/// data follow by Lanczos' method (G. Golub, U. von Matt, J. Comput. Graph. Statist. 6, 1997). What
+/// repeats at one place leave of their mean has eigenvalues 0: pure error. The trace
 /// is the derivative of n log(mu) - log(det(H)) by log(mu), so that two factors give its mean between
 /// their mu exactly. Elsewhere it is that of eigenvalues in the proportions of an energy of fourth order
 /// with this mean, which holds near mu_0.
@@ -33,7 +35,7 @@ public:
   /// data: those of the fit, which is prepared with mu_0. other: of another mu near mu_0. Without it the
   /// trace at mu_0 is guessed: mu_0 has to smooth over three times the distance of the values then.
   /// Throws Aborted.
-  InfluenceSpectrum(const SmoothFit& fit, const ScatteredValues& data, const Determinant& other,
+  InfluenceSpectrum(const SmoothFit& fit, const RepeatedValues& data, const Determinant& other,
     const ProgressMonitor& progress = ProgressMonitor());
 
   /// Of mu_0.
@@ -80,7 +82,12 @@ public:
   /// counts. The fit must have the factor of mu_0 still.
   bool Rescale(SmoothFit& fit, double mu) const;
 
-  static constexpr Index FewValues = 300; ///< whose matrix is decomposed
+  /// Of S, one per column, and its eigenvalues at mu; none of more than FewValues places.
+  const Eigen::MatrixXd& Eigenvectors() const { return this->Vectors; }
+  Vector Eigenvalues(double mu) const;
+  double Start() const { return this->Mu; } ///< mu_0
+
+  static constexpr Index FewValues = 300; ///< places, whose matrix is decomposed
 
 private:
   /// Eigenvalues with weights.
@@ -108,7 +115,7 @@ private:
   double Largest = 0.0; ///< eigenvalue
   Determinant Own;
   double Mu;
-  Index Count;
+  Index Count; ///< of values, repeats at one place included
   Eigen::MatrixXd Vectors; ///< of S, and its eigenvalues, if they are exact
   Vector Shares;
   Measure Trace;

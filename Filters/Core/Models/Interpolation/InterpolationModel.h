@@ -33,7 +33,7 @@ public:
   {
     return this->IsFitted ? this->Last : this->None;
   }
-  Index NumberOfValues() const { return this->Data.Count(); }
+  const ScatteredValues& Given() const { return this->Data; }
 
 private:
   SmoothInterpolation Method;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/Interpolation/ScatteredValues.h"
+#include "Core/Models/Interpolation/RepeatedValues.h"
 
 #include "Core/Foundation/DisjointSets.h"
 
@@ -90,6 +90,48 @@ std::vector<Index> FirstOfNear(const std::vector<PlaceKey>& keys)
   return first;
 }
 
+/// The numbers of values with those of one place in succession, in an order that does not depend on
+/// theirs, and where each place begins.
+struct Grouping
+{
+  explicit Grouping(const ScatteredValues& given);
+
+  std::vector<Index> Order;
+  std::vector<Index> Begin = { 0 };
+};
+
+Grouping::Grouping(const ScatteredValues& given)
+  : Order(given.Places.size())
+{
+  const Index count = given.Count();
+  std::vector<Index>& order = this->Order;
+  std::vector<PlaceKey> keys(count);
+  std::transform(given.Places.begin(), given.Places.end(), keys.begin(), Key);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+    [&](Index a, Index b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
+  std::vector<PlaceKey> sorted;
+  for (const Index i : order)
+  {
+    sorted.push_back(keys[i]);
+  }
+  const std::vector<Index> first = FirstOfNear(sorted);
+  std::vector<Index> place(count);
+  for (Index i = 0; i < count; ++i)
+  {
+    place[order[i]] = first[i];
+  }
+  std::stable_sort(
+    order.begin(), order.end(), [&](Index a, Index b) { return place[a] < place[b]; });
+  for (Index i = 1; i <= count; ++i)
+  {
+    if (i == count || place[order[i]] != place[order[i - 1]])
+    {
+      this->Begin.push_back(i);
+    }
+  }
+}
+
 } // namespace
 
 Index SurfacePoint::Vertex() const
@@ -124,33 +166,14 @@ ScatteredValues ScatteredValues::AtVertices(const Values& f, const Flags& known)
 MergedValues::MergedValues(const ScatteredValues& given)
 {
   const Index count = given.Count();
-  std::vector<PlaceKey> keys(count);
-  std::transform(given.Places.begin(), given.Places.end(), keys.begin(), Key);
-  std::vector<Index> order(count);
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-    [&](Index a, Index b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
-  std::vector<PlaceKey> sorted;
-  for (const Index i : order)
-  {
-    sorted.push_back(keys[i]);
-  }
-  const std::vector<Index> first = FirstOfNear(sorted);
-  std::vector<Index> place(count);
-  for (Index i = 0; i < count; ++i)
-  {
-    place[order[i]] = first[i];
-  }
-  std::stable_sort(
-    order.begin(), order.end(), [&](Index a, Index b) { return place[a] < place[b]; });
+  const Grouping groups(given);
+  const std::vector<Index>& order = groups.Order;
   this->Rows.Given.resize(count, given.Given.cols());
   this->Rows.Weights.resize(count);
-  for (Index begin = 0, end = 0; begin < count; begin = end)
+  for (std::size_t g = 1; g < groups.Begin.size(); ++g)
   {
-    while (end < count && place[order[end]] == place[order[begin]])
-    {
-      ++end;
-    }
+    const Index begin = groups.Begin[g - 1];
+    const Index end = groups.Begin[g];
     const auto row = static_cast<Eigen::Index>(this->Rows.Count());
     this->Rows.Places.push_back(given.Places[order[begin]]);
     this->Rows.Given.row(row) = given.Given.row(order[begin]);
@@ -169,6 +192,34 @@ MergedValues::MergedValues(const ScatteredValues& given)
   }
   this->Rows.Given.conservativeResize(this->Rows.Count(), Eigen::NoChange);
   this->Rows.Weights.conservativeResize(this->Rows.Count());
+}
+
+RepeatedValues::RepeatedValues(const ScatteredValues& given, const MergedValues& merged)
+  : RepeatedValues(merged.Rows)
+{
+  if (merged.Repeated == 0)
+  {
+    return;
+  }
+  const Grouping groups(given);
+  Index copied = 0;
+  for (Index place = 0; place < this->Count(); ++place)
+  {
+    const Index begin = groups.Begin[static_cast<std::size_t>(place)];
+    const Index end = groups.Begin[static_cast<std::size_t>(place) + 1];
+    this->Repeats[place] = end - begin - 1.0;
+    for (Index i = begin; i < end && end - begin > 1; ++i)
+    {
+      const Index row = groups.Order[i];
+      this->Scatter.row(place) +=
+        given.Weights[row] * (given.Given.row(row) - this->Given.row(place)).cwiseAbs2();
+    }
+    copied += end - begin > 1 && this->Scatter.row(place).isZero(0.0) ? 1 : 0;
+  }
+  if (copied > merged.Contradicting)
+  {
+    this->Repeats.array() *= (this->Scatter.rowwise().sum().array() > 0.0).cast<double>();
+  }
 }
 
 } // namespace SurfaceDiffusion

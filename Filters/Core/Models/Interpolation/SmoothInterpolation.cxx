@@ -8,6 +8,7 @@
 #include "Core/Models/Interpolation/SmoothInterpolationWork.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Solvers/NotPositiveDefinite.h"
+#include "Core/Statistics/StudentFactor.h"
 #include "Core/Surface/ComponentMeshes.h"
 
 #include <algorithm>
@@ -24,10 +25,10 @@ namespace
 {
 
 /// The values of each component, with its own numbers of vertices.
-std::vector<ScatteredValues> ByComponent(const TriangleMesh& mesh, const ScatteredValues& all)
+std::vector<RepeatedValues> ByComponent(const TriangleMesh& mesh, const RepeatedValues& all)
 {
   const std::vector<Index>& begin = mesh.ComponentsBegin();
-  std::vector<ScatteredValues> parts(static_cast<std::size_t>(mesh.NumberOfComponents()));
+  std::vector<RepeatedValues> parts(static_cast<std::size_t>(mesh.NumberOfComponents()));
   std::vector<std::vector<Index>> rows(parts.size());
   for (Index i = 0; i < all.Count(); ++i)
   {
@@ -52,11 +53,15 @@ std::vector<ScatteredValues> ByComponent(const TriangleMesh& mesh, const Scatter
     const Index count = parts[c].Count();
     parts[c].Given.resize(count, all.Given.cols());
     parts[c].Weights.resize(count);
+    parts[c].Scatter.resize(count, all.Given.cols());
+    parts[c].Repeats.resize(count);
     for (Index i = 0; i < count; ++i)
     {
       const Index row = rows[c][static_cast<std::size_t>(i)];
       parts[c].Given.row(i) = all.Given.row(row);
       parts[c].Weights[i] = all.Weights[row];
+      parts[c].Scatter.row(i) = all.Scatter.row(row);
+      parts[c].Repeats[i] = all.Repeats[row];
     }
   }
   return parts;
@@ -64,7 +69,7 @@ std::vector<ScatteredValues> ByComponent(const TriangleMesh& mesh, const Scatter
 
 /// The numbers of a column over the components, from those of each with its values.
 SmoothInterpolation::Column Together(const std::vector<SmoothInterpolation::Column>& parts,
-  const std::vector<const ScatteredValues*>& values)
+  const std::vector<const RepeatedValues*>& values)
 {
   if (parts.size() == 1)
   {
@@ -90,7 +95,8 @@ SmoothInterpolation::Column Together(const std::vector<SmoothInterpolation::Colu
     all.Residual += total * part.Residual * part.Residual;
     all.DegreesOfFreedom += part.DegreesOfFreedom;
     all.Energy += part.Energy;
-    const double left = std::max(1e-6 * own, own - part.DegreesOfFreedom);
+    const double left =
+      std::max(1e-6 * own, own + values[c]->Repeats.sum() - part.DegreesOfFreedom);
     free += part.NoiseLevel > 0.0 ? left : 0.0;
     noise += left * part.NoiseLevel * part.NoiseLevel;
     count += own;
@@ -150,13 +156,13 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   }
   const Eigen::RowVectorXd lowest = merged.Rows.Given.colwise().minCoeff();
   const Eigen::RowVectorXd highest = merged.Rows.Given.colwise().maxCoeff();
-  const std::vector<ScatteredValues> values = ByComponent(mesh, merged.Rows);
+  const std::vector<RepeatedValues> values = ByComponent(mesh, { data, merged });
   const ComponentMeshes meshes(mesh);
-  std::vector<const ScatteredValues*> valuesOfParts;
+  std::vector<const RepeatedValues*> valuesOfParts;
   std::vector<std::vector<Column>> columnsOfParts(result.Columns.size());
   for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
   {
-    const ScatteredValues& rows = values[static_cast<std::size_t>(c)];
+    const RepeatedValues& rows = values[static_cast<std::size_t>(c)];
     if (rows.Count() == 0)
     {
       ++result.UndeterminedComponents;
@@ -212,7 +218,7 @@ SmoothInterpolation SmoothInterpolation::OfComponent(const ComponentMeshes& mesh
     this->Options, parallel };
 }
 
-SmoothInterpolation::Result SmoothInterpolation::FitPart(const ScatteredValues& rows,
+SmoothInterpolation::Result SmoothInterpolation::FitPart(const RepeatedValues& rows,
   const Eigen::RowVectorXd& lowest, const Eigen::RowVectorXd& highest,
   const ProgressMonitor& progress) const
 {
@@ -392,7 +398,7 @@ Vector SmoothInterpolation::VarianceOfMean(
 void SmoothInterpolation::FitSmoothly(
   Work& work, Result& result, const ProgressMonitor& progress) const
 {
-  const ScatteredValues& rows = work.Rows;
+  const RepeatedValues& rows = work.Rows;
   const Eigen::Index columns = rows.Given.cols();
   const bool isGiven = this->Options.Smoothing == Choice::Given;
   const double noise =
@@ -400,7 +406,7 @@ void SmoothInterpolation::FitSmoothly(
   const auto limited = [&](double mu) { return std::min(mu, work.LargestSmoothing()); };
   const double givenMu = limited(this->Options.Mu);
   const auto measure = [&](double mu, const InfluenceSpectrum::Determinant& other,
-                         const ScatteredValues& data, const ProgressMonitor& part)
+                         const RepeatedValues& data, const ProgressMonitor& part)
   {
     this->Prepare(work, result, mu, work.None, part.Part(0.0, 0.5));
     return InfluenceSpectrum(work.Fit, data, other, part.Part(0.5, 1.0));
@@ -453,6 +459,7 @@ void SmoothInterpolation::FitSmoothly(
     this->FitColumns(work, result, 0, columns, givenMu, progress.Part(0.4, 1.0));
     return;
   }
+  work.Spectrum = start.Eigenvectors().cols() > 0 ? &start : nullptr;
   // One factor serves all columns that need no other; those first, so that it is there still.
   const bool needsFactor = this->Options.ComputeError || this->Options.KeepRange;
   std::vector<Eigen::Index> others;
@@ -481,8 +488,9 @@ void SmoothInterpolation::FitSmoothly(
     constexpr int most = 6;
     bool isResolved = start.Resolves(mu);
     InfluenceSpectrum::Determinant last = start.Known();
-    ScatteredValues column = rows;
+    RepeatedValues column = rows;
     column.Given = rows.Given.col(c);
+    column.Scatter = rows.Scatter.col(c);
     for (int again = 0; again < most && !isResolved; ++again)
     {
       const bool isNear = mu < apart * last.Mu && last.Mu < apart * mu;
@@ -509,7 +517,7 @@ void SmoothInterpolation::FitSmoothly(
 bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index first,
   Eigen::Index count, double mu, const ProgressMonitor& progress) const
 {
-  const ScatteredValues& rows = work.Rows;
+  const RepeatedValues& rows = work.Rows;
   // The factor may be that of the active set of the column before.
   const bool isOfBounds = this->Options.KeepRange && first > 0;
   if (work.Fit.GetSmoothing() != mu || isOfBounds)
@@ -529,6 +537,13 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
   {
     isOpen = this->FindOpen(work);
     result.HasInfiniteError = result.HasInfiniteError || isOpen.any();
+  }
+  if (this->Options.ComputeError && work.Spectrum)
+  {
+    deviations = this->ErrorOverSmoothing(work, result, first, progress.Part(0.4, 0.8));
+  }
+  else if (this->Options.ComputeError)
+  {
     deviations = (work.Fit.InverseDiagonal(progress.Part(0.4, 0.7)).cwiseMax(0.0) +
       this->VarianceOfMean(work, work.None, false, progress.Part(0.7, 0.8)))
                    .cwiseSqrt();
@@ -546,20 +561,29 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     const Vector given = rows.Given.col(first + c);
     const Vector misfit = given - work.Fit.AtPoints(u).col(0);
     const double square = rows.Weights.dot(misfit.cwiseAbs2());
-    const double left = rows.Count() - found.DegreesOfFreedom;
+    const double left = rows.Count() + rows.Repeats.sum() - found.DegreesOfFreedom;
     const double fewest = 1e-6 * rows.Count();
-    const double free = std::max(fewest, left);
+    const double squares = square + rows.Scatter.col(first + c).sum();
     found.Residual = std::sqrt(square / rows.Weights.sum());
-    found.NoiseLevel =
-      this->Options.NoiseLevel > 0.0 ? this->Options.NoiseLevel : std::sqrt(square / free);
-    if (this->Options.ComputeError)
+    found.NoiseLevel = this->Options.NoiseLevel > 0.0 ? this->Options.NoiseLevel
+                                                      : std::sqrt(squares / std::max(fewest, left));
+    if (this->Options.ComputeError && work.Spectrum)
+    {
+      result.Error.col(first + c) = // without bounds
+        isOpen.select(std::numeric_limits<double>::infinity(), deviations.array());
+      result.HasUnknownError = result.HasUnknownError || result.Error.col(first + c).hasNaN();
+    }
+    else if (this->Options.ComputeError)
     {
       // Nothing is left if the fit reaches all values, by its freedom or because they are alike.
       constexpr double resolved = 16.0 * std::numeric_limits<double>::epsilon();
       const bool isKnown = this->Options.NoiseLevel > 0.0 ||
-        (left > fewest && found.Residual > work.RoundOff(first + c, resolved, result.IsFlattest));
+        (left > fewest &&
+          std::sqrt(squares / rows.Weights.sum()) >
+            work.RoundOff(first + c, resolved, result.IsFlattest));
+      const double factor = this->Options.NoiseLevel > 0.0 ? 1.0 : StudentFactor(left);
       result.Error.col(first + c) = isOpen.select(std::numeric_limits<double>::infinity(),
-        (isKnown ? found.NoiseLevel : std::numeric_limits<double>::quiet_NaN()) *
+        (isKnown ? factor * found.NoiseLevel : std::numeric_limits<double>::quiet_NaN()) *
           deviations.array()); // without bounds
       result.HasUnknownError = result.HasUnknownError || !isKnown;
     }

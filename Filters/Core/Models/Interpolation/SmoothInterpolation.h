@@ -12,6 +12,7 @@ namespace SurfaceDiffusion
 {
 
 class ComponentMeshes;
+struct RepeatedValues;
 
 /// Interpolation and smoothing of values at a few points of a surface: the minimiser of
 ///   E(u) = 1/2 sum_i w_i (u(p_i) - d_i)^2 + mu/2 int (kappa^2 u - div(D grad u))^2,
@@ -32,7 +33,10 @@ class ComponentMeshes;
 /// mean m = w^T d of a component, from which its values are measured, adds
 ///   (1 - (A 1)_i)^2 Var(m),  Var(m) / s^2 = w^T (W^-1 + B (mu Q)^-1 B^T) w,
 /// with the fit A 1 of values that are all 1. The errors of both parts do not correlate, since the
-/// fit is the best linear predictor.
+/// fit is the best linear predictor. A band of 1.645 standard errors holds 90 %: they are longer than
+/// the deviation by StudentFactor() if s is estimated, and with up to InfluenceSpectrum::FewValues
+/// places a mu that is found has a distribution, over which the mean square of the error is taken; see
+/// SmoothingPosterior.
 class SmoothInterpolation
 {
 public:
@@ -68,8 +72,8 @@ public:
     /// than three places of one triangle contradict each other.
     double Residual = 0.0;
     double DegreesOfFreedom = 0.0;
-    /// s, given or estimated, the root of its mean square over the residual degrees of freedom; 0 if
-    /// the values hold.
+    /// s, given or estimated, the root of its mean square over the residual degrees of freedom, those
+    /// of repeats at one place included; 0 if the values hold.
     double NoiseLevel = 0.0;
     double Energy = 0.0; ///< E(u)
   };
@@ -115,7 +119,7 @@ private:
 
   SmoothInterpolation OfComponent(const ComponentMeshes& meshes, Index c) const;
   /// Of a connected surface, the bounds of KeepRange being those of all values.
-  Result FitPart(const ScatteredValues& rows, const Eigen::RowVectorXd& lowest,
+  Result FitPart(const RepeatedValues& rows, const Eigen::RowVectorXd& lowest,
     const Eigen::RowVectorXd& highest, const ProgressMonitor& progress) const;
   void FitExactly(Work& work, Result& result, const ProgressMonitor& progress) const;
   void FitSmoothly(Work& work, Result& result, const ProgressMonitor& progress) const;
@@ -129,6 +133,8 @@ private:
   Flags FindOpen(const Work& work) const;
   Vector VarianceOfMean(
     Work& work, const Flags& held, bool isExact, const ProgressMonitor& progress) const;
+  Vector ErrorOverSmoothing(
+    Work& work, Result& result, Eigen::Index column, const ProgressMonitor& progress) const;
   double StartSmoothing(const Work& work) const;
 
   std::shared_ptr<const Assembler> Assembly;

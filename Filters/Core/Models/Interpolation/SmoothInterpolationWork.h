@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Models/Interpolation/InfluenceSpectrum.h"
 #include "Core/Models/Interpolation/SmoothFit.h"
 #include "Core/Models/Interpolation/SmoothInterpolation.h"
 #include "Core/Solvers/NestedDissection.h"
@@ -17,7 +18,7 @@ namespace SurfaceDiffusion
 struct SmoothInterpolation::Work
 {
   Work(const Assembler& assembler, const CornerWeights& coefficients, const Settings& settings,
-    const ScatteredValues& values, const ParallelFor& parallel)
+    const RepeatedValues& values, const ParallelFor& parallel)
     : Rows(values)
     , Energy(assembler, coefficients, settings.Kappa, settings.Rim, parallel)
     , Fit(Energy, Rows, IsRegularMesh(assembler), parallel)
@@ -60,7 +61,7 @@ struct SmoothInterpolation::Work
       isOfFree ? 1e-5 * values.abs().maxCoeff() : 0.0);
   }
 
-  ScatteredValues Rows;
+  RepeatedValues Rows;
   SmoothnessEnergy Energy;
   SmoothFit Fit;
   double Area;
@@ -74,6 +75,8 @@ struct SmoothInterpolation::Work
   Values Start;
   /// w^T B Q^-1 B^T w for the weights w of the mean of the values; negative: not known
   double EnergyOfMean = -1.0;
+  /// Of all columns, if mu is found and eigenvectors are known; null otherwise
+  const InfluenceSpectrum* Spectrum = nullptr;
 };
 
 } // namespace SurfaceDiffusion

@@ -3,7 +3,7 @@
 #include "Core/Models/Interpolation/SmoothnessEnergy.h"
 
 #include "Core/Models/Interpolation/HessianEnergy.h"
-#include "Core/Models/Interpolation/ResolvedShare.h"
+#include "Core/Models/Interpolation/NeedleShare.h"
 #include "Core/Models/Interpolation/SparseSquare.h"
 #include "Core/Operators/CotanWeights.h"
 
@@ -17,12 +17,12 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The coefficients, with those of needles reduced to the size of ResolvedShare().
+/// The coefficients, with those of needles reduced to the size of NeedleShare().
 CornerWeights Resolved(const TriangleMesh& mesh, CornerWeights coefficients)
 {
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    coefficients.row(t) *= ResolvedShare(mesh.Shapes()[t]);
+    coefficients.row(t) *= NeedleShare(mesh.Shapes()[t]);
   }
   return coefficients;
 }

@@ -14,7 +14,7 @@ namespace
 {
 
 /// The penalty on u - q, in units of 1/(vertex spacing) and of the typical cost.
-constexpr double PenaltyOfGradients = 4.0;
+constexpr double PenaltyOfDifferences = 4.0;
 constexpr double PenaltyOfCosts = 0.1;
 
 /// The minimum of a . v over S.
@@ -71,7 +71,7 @@ SimplexSplitting::SimplexSplitting(std::shared_ptr<const TriangleMesh> mesh, Fla
   ForEach(parallel, this->NumberOfVertices(),
     [&](Index i)
     {
-      this->Penalty[i] = PenaltyOfGradients * std::sqrt(this->Areas[i]) +
+      this->Penalty[i] = PenaltyOfDifferences * std::sqrt(this->Areas[i]) +
         PenaltyOfCosts * typicalCost * this->Areas[i];
     });
 }

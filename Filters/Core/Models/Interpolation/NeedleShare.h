@@ -14,7 +14,7 @@ namespace SurfaceDiffusion
 /// them, and its round-off would be larger than the weights of values. The ends of an edge that is
 /// so short keep nearly the same value: their difference is at most of the order of 1e-4 of that
 /// along other edges.
-inline double ResolvedShare(const TriangleMesh::Shape& shape)
+inline double NeedleShare(const TriangleMesh::Shape& shape)
 {
   constexpr double largest = 1e4;
   return std::min(1.0, largest / CotanWeights(shape).cwiseAbs().maxCoeff());

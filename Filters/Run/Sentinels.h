@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "Run/ModelInputs.h"
+
+namespace SurfaceDiffusion
+{
+
+/// Warn of numbers that programs write where they have no value, such as -9999 or the fill
+/// value of netCDF, 9.969e36, that the known data have farther from all others than half of their range:
+/// are they values?
+void AskForSentinels(const Fields& fields, RunResult& result);
+
+} // namespace SurfaceDiffusion
