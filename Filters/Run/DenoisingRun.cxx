@@ -9,13 +9,6 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-constexpr double LargestVolumeChange = 0.02; ///< without a warning
-
-} // namespace
-
 void DenoisingRunSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Number(

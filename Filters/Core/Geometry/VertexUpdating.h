@@ -9,6 +9,9 @@
 namespace SurfaceDiffusion
 {
 
+/// The relative change of the volume above which a warning says that shape was taken for noise.
+constexpr double LargestVolumeChange = 0.02;
+
 /// How far a surface was moved, in coordinate units.
 struct VertexMotion
 {
