@@ -169,10 +169,10 @@ std::vector<Output> HarmonicMapSettings::Finish(const RunState& state, RunResult
   if (std::abs(change) > LargestVolumeChange)
   {
     Sentence text(Word::Setting("MoveVertices"));
-    result.WarnOnce(text << " changes the volume by " << 100.0 * change
-                         << " %: shape was smoothed, too (for less, set "
-                         << Word::Setting("NumberOfTimeSteps") << " or " << Word::Setting("TimeStep")
-                         << " lower)");
+    result.WarningsOfFinish.push_back(text << " changes the volume by " << 100.0 * change
+                                           << " %: shape was smoothed, too (for less, set "
+                                           << Word::Setting("NumberOfTimeSteps") << " or "
+                                           << Word::Setting("TimeStep") << " lower)");
   }
   const TriangleMesh& mesh = state.Surface.InputMesh();
   outputs.push_back(

@@ -65,6 +65,7 @@ struct RunResult
   Values FidelityFactors;
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<Sentence> Warnings;
+  std::vector<Sentence> WarningsOfFinish; ///< of the step that is shown
 
   void AddNumber(const std::string& name, double value, OutputType type = OutputType::Double)
   {

@@ -383,6 +383,7 @@ void Run::Seek(int step, const ProgressMonitor& progress)
     if (block->FinishedStep != reached || block->FinishSettings != outputSettings)
     {
       block->FinishedStep = -1;
+      block->Result.WarningsOfFinish.clear();
       const bool onCells = this->Settings->DescribeModel().ResultOnCells;
       block->Outputs = this->Settings->Finish(
         { *block->Surface, block->Units, *block->Path, onCells ? block->Cells.get() : nullptr,

@@ -255,6 +255,7 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
     inputs.Add(block->SurfaceVersion);
     inputs.Add(block->FieldsVersion);
     ofBlocks.Add(block->Result.Warnings, block->Name);
+    ofBlocks.Add(block->Result.WarningsOfFinish, block->Name);
     undetermined += block->Undetermined.NumberOfComponents;
   }
   std::vector<Sentence> sentences;
