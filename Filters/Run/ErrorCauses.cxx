@@ -91,8 +91,8 @@ Sentence ExplainError(Settings& settings, const std::runtime_error& error)
   }
   else if (dynamic_cast<const UnboundedGrowth*>(&error))
   {
-    text << ": take a smaller " << Word::Setting("TimeStep")
-         << ", other parameters of the kinetics, or clamp at zero";
+    text << ": take a smaller " << Word::Setting("TimeStep") << ", waves of at least 6 edges ("
+         << Word::Setting("RefineTo") << "), other parameters of the kinetics, or clamp at zero";
   }
   return text;
 }

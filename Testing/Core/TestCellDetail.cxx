@@ -4,6 +4,7 @@
 // The detail of cells that points do not resolve diffuses, too.
 
 #include "CellRun.h"
+#include "Hubs.h"
 #include "MeshFiles.h"
 #include "Meshes.h"
 
@@ -145,6 +146,22 @@ TEST(CellFluxes, MakeAnMMatrixOnAnySurface)
       EXPECT_LE((l.row(i).array() > 0.0).count(), 1);
     }
   }
+}
+
+// The matrix of 200 cells at an edge would have 40,000 entries. Without the unknown it is that of the fluxes
+// t t / (200 t) between each two of them, with t = 3 as centroids are 1/3 from the edge of length 1.
+TEST(CellFluxes, AtAnEdgeOfManyTrianglesHaveAnUnknown)
+{
+  constexpr Index n = 200;
+  const Testing::Surface surface = TrianglesAtAnEdge(n);
+  const Eigen::MatrixXd l = OutflowsOf(surface, CellInput(surface).Data.Cells);
+  ASSERT_EQ(l.rows(), n + 1);
+  EXPECT_EQ((l.array() != 0.0).count(), 3 * n + 1);
+  const Eigen::MatrixXd fluxes =
+    l.topLeftCorner(n, n) - l.topRightCorner(n, 1) * l.bottomLeftCorner(1, n) / l(n, n);
+  const Eigen::MatrixXd expected =
+    3.0 * (Eigen::MatrixXd::Identity(n, n) - Eigen::MatrixXd::Constant(n, n, 1.0 / n));
+  EXPECT_LT((fluxes - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(CellDetail, ImpulsesSpreadAsWidelyAsOnPoints)

@@ -16,16 +16,19 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The reduction of rows that are cells, each in one process, and edges on interfaces.
+/// With more triangles an edge has an unknown of its own.
+constexpr std::size_t MostTriangles = 16;
+
+/// The reduction of rows that are cells, each in one process, edges on interfaces, and others.
 class CellReduction : public Reduction
 {
 public:
-  CellReduction(const Reduction& ofVertices, Index cells)
+  CellReduction(const Reduction& ofVertices, Index cells, Index rows)
     : Reduction(Kind::Distributed)
     , OfVertices(ofVertices)
   {
     const auto edges = static_cast<Index>(ofVertices.InterfaceEdges().size());
-    this->OwnedVertices.assign(static_cast<std::size_t>(cells + edges), 1);
+    this->OwnedVertices.assign(static_cast<std::size_t>(rows), 1);
     for (Index e = 0; e < edges; ++e)
     {
       this->VerticesOnInterface.push_back(cells + e);
@@ -113,7 +116,6 @@ CellFluxes::CellFluxes(const TriangleMesh& mesh, const Points& points,
   : Mesh(mesh)
   , Parallel(parallel)
   , CellCount(count)
-  , InterfaceCount(static_cast<Index>(mesh.GetReduction().InterfaceEdges().size()))
 {
   std::vector<Index> cellOfTriangle(static_cast<std::size_t>(mesh.NumberOfTriangles()));
   Points vertices(mesh.NumberOfVertices(), 3);
@@ -144,7 +146,7 @@ CellFluxes::CellFluxes(const TriangleMesh& mesh, const Points& points,
   this->MakePattern();
   this->OverProcesses = mesh.GetReduction().IsSerial()
     ? Reduction::SharedSerial()
-    : std::make_shared<CellReduction>(mesh.GetReduction(), count);
+    : std::make_shared<CellReduction>(mesh.GetReduction(), count, this->NumberOfRows());
 }
 
 void CellFluxes::ListSides(
@@ -157,7 +159,7 @@ void CellFluxes::ListSides(
       std::array<Index, 2>{ std::min(edge[0], edge[1]), std::max(edge[0], edge[1]) },
       static_cast<Index>(interfaces.size()));
   }
-  std::vector<std::vector<Side>> onInterfaces(interfaces.size());
+  std::vector<std::vector<Side>> withUnknowns(interfaces.size());
   std::vector<Side> inside;
   std::vector<Index> insideBegin;
   std::vector<EdgeTriangle> list;
@@ -180,12 +182,17 @@ void CellFluxes::ListSides(
       {
         continue;
       }
-      std::vector<Side>& sides =
-        isInterface ? onInterfaces[static_cast<std::size_t>(found->second)] : inside;
-      if (!isInterface)
+      const bool isWide = !isInterface && end - begin > MostTriangles;
+      if (isWide)
+      {
+        withUnknowns.emplace_back();
+      }
+      else if (!isInterface)
       {
         insideBegin.push_back(static_cast<Index>(inside.size()));
       }
+      std::vector<Side>& sides = isInterface ? withUnknowns[static_cast<std::size_t>(found->second)]
+                                             : (isWide ? withUnknowns.back() : inside);
       const Eigen::RowVector3d middle = 0.5 * (points.row(v) + points.row(other));
       for (std::size_t k = begin; k < end; ++k)
       {
@@ -200,7 +207,8 @@ void CellFluxes::ListSides(
       }
     }
   }
-  for (const std::vector<Side>& sides : onInterfaces)
+  this->UnknownCount = static_cast<Index>(withUnknowns.size());
+  for (const std::vector<Side>& sides : withUnknowns)
   {
     this->EdgeBegin.push_back(static_cast<Index>(this->Sides.size()));
     this->Sides.insert(this->Sides.end(), sides.begin(), sides.end());
@@ -257,7 +265,7 @@ void CellFluxes::MakePattern()
     for (Index k = this->CellBegin[c]; k < this->CellBegin[c + 1]; ++k)
     {
       const Index edge = this->Sides[static_cast<std::size_t>(this->CellSides[k])].Edge;
-      if (this->IsOnInterface(edge))
+      if (this->HasUnknown(edge))
       {
         row.push_back(this->CellCount + edge);
       }
@@ -268,7 +276,7 @@ void CellFluxes::MakePattern()
     }
     addRow();
   }
-  for (Index e = 0; e < this->InterfaceCount; ++e)
+  for (Index e = 0; e < this->UnknownCount; ++e)
   {
     row.assign(1, this->CellCount + e);
     addCellsAt(e);
@@ -282,8 +290,8 @@ void CellFluxes::SetConductances(const Conductance& conductance)
   ForEach(this->Parallel, static_cast<Index>(this->Sums.size()),
     [&](Index e)
     {
-      // An unknown on an interface needs an equation.
-      const double least = this->IsOnInterface(e) ? 1e-12 : 0.0;
+      // An unknown needs an equation.
+      const double least = this->HasUnknown(e) ? 1e-12 : 0.0;
       double sum = 0.0;
       for (Index s = this->EdgeBegin[e]; s < this->EdgeBegin[e + 1]; ++s)
       {
@@ -344,7 +352,7 @@ void CellFluxes::Assemble(const Vector& diagonal, double scale, SparseMatrix& ma
       const Index s = this->CellSides[k];
       const Index edge = this->Sides[static_cast<std::size_t>(s)].Edge;
       const double t = scale * this->Conductances[s];
-      if (this->IsOnInterface(edge))
+      if (this->HasUnknown(edge))
       {
         sum += t;
         entry(c, this->CellCount + edge) -= t;

@@ -29,7 +29,8 @@ namespace SurfaceDiffusion
 ///
 /// Over several processes the value at an edge on an interface is an unknown of its own, in the row
 /// of the number of cells plus its number in Reduction::InterfaceEdges(); eliminated, it gives the
-/// fluxes above.
+/// fluxes above. So is, in the rows after these, that at an edge of many triangles, whose cells would
+/// have a full matrix.
 class CellFluxes
 {
 public:
@@ -38,7 +39,7 @@ public:
     Index count, const ParallelFor& parallel);
 
   Index NumberOfCells() const { return this->CellCount; }
-  /// Cells, then edges on interfaces.
+  /// Cells, then edges with an unknown of their own.
   Index NumberOfRows() const { return static_cast<Index>(this->RowBegin.size()) - 1; }
   /// Over the processes, for vectors with an entry per row.
   std::shared_ptr<const Reduction> GetReduction() const { return this->OverProcesses; }
@@ -66,12 +67,12 @@ private:
   void MakePattern();
   template <typename Conductance>
   void SetConductances(const Conductance& conductance);
-  bool IsOnInterface(Index edge) const { return edge < this->InterfaceCount; }
+  bool HasUnknown(Index edge) const { return edge < this->UnknownCount; }
 
   const TriangleMesh& Mesh;
   const ParallelFor& Parallel;
   Index CellCount;
-  Index InterfaceCount; ///< edges on interfaces are the first ones
+  Index UnknownCount = 0; ///< edges with an unknown are the first ones
   std::vector<Side> Sides; ///< by edge
   std::vector<Index> EdgeBegin;
   std::vector<Index> CellBegin, CellSides; ///< the sides of each cell

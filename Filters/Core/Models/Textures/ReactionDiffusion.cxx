@@ -278,9 +278,8 @@ void ReactionDiffusion::Solve(StepReport& report, const ProgressMonitor& progres
   {
     const Solution& solution = this->Solutions[c];
     constexpr double boundless = 1e100;
-    if (solution.Failure &&
-      this->Assembly->Mesh().GetReduction().Any(
-        !(this->RightHandSide[c].array().abs() < boundless).all()))
+    if (this->Assembly->Mesh().GetReduction().Any(
+          !(this->RightHandSide[c].array().abs() < boundless).all()))
     {
       throw UnboundedGrowth();
     }
