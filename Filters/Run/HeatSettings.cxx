@@ -19,6 +19,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
+/// Of columns with matrices of their own.
+constexpr std::size_t MostFactors = 32;
+
 LinearDiffusion::Scheme SchemeOf(TimeIntegrator integrator, bool hasWidth)
 {
   switch (integrator)
@@ -130,6 +133,7 @@ ModelTraits HeatSettings::DescribeModel() const
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
   traits.EstimatesNoise = this->FindsFidelity();
+  traits.ColumnsAreIndependent = this->InitialFill != SurfaceDiffusion::InitialFill::Noise;
   traits.CanBeDistributed = !this->FindsFidelity() && !this->Blur.IsOn();
   DescribeData(*this, traits);
   return traits;
@@ -214,15 +218,7 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
     found = FindFidelity(inputs, search, make, result);
   }
   result.AddNumber("EffectiveFidelityWeight", found.OfColumns.front() / unit);
-  return found.MakeModels(std::move(inputs.Data),
-    [&](PointData data, double fidelity)
-    {
-      if (found.OfColumns.size() > 1)
-      {
-        inputs.Solvers.Release(SolverPurpose::Step); // each column keeps its own
-      }
-      return make(std::move(data), fidelity);
-    });
+  return found.MakeModels(std::move(inputs.Data), make);
 }
 
 std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result) const
@@ -281,10 +277,14 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   }
   result.AddNumber("EffectiveFidelityWeight", effective);
   const double smallest = ShareOfSmallTriangles(mesh, h, inputs.Parallel);
+  // Columns with weights of their own would need the memory for a factor each. With one solver, each
+  // step factorises the matrices of all of them again.
+  settings.SharesSolver = fidelity.OfColumns.size() >
+    (this->Mode == HeatMode::SteadyState ? std::size_t{ 1 } : MostFactors);
   std::shared_ptr<LinearSolver> solver;
   const auto make = [&](PointData data, double weight)
   {
-    if (solver) // that of the former column
+    if (solver && !settings.SharesSolver) // that of the former column
     {
       inputs.Solvers.Release(SolverPurpose::Step);
     }

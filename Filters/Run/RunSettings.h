@@ -95,6 +95,8 @@ struct ModelTraits
   double MaximumDistance = 0.0; ///< of samples from the surface; 0: any
   bool NeedsDirections = false; ///< diffusivities along and across differ
   bool HoldsKnownValues = false;
+  /// No column of the state depends on other ones or on their number, given the missing points.
+  bool ColumnsAreIndependent = false;
   bool MaskHasEffect = true; ///< in mode Inpaint, if there are data
   bool MayEndEarly = false; ///< the state may become stationary before the last step
   bool CountsClamped = false;

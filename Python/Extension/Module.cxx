@@ -128,6 +128,7 @@ NB_MODULE(_core, m)
     "model"_a, "settings"_a, "fields"_a.none());
   m.def("find_times", &FindTimes, "model"_a, "settings"_a, "last"_a = -1);
   m.def("find_time_step", &FindTimeStep, "model"_a, "settings"_a);
+  m.def("has_independent_columns", &HasIndependentColumns, "model"_a, "settings"_a);
   m.def("find_step", &FindStep, "model"_a, "settings"_a, "time"_a, "last"_a);
   m.def("number_of_threads", [] { return PythonThreads::Instance().NumberOfThreads(); });
   m.def(

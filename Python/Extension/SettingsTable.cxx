@@ -248,6 +248,11 @@ double FindTimeStep(const std::string& model, const nb::dict& values)
   return MakeTimeSettings(model, values)->DescribeModel().TimeStep;
 }
 
+bool HasIndependentColumns(const std::string& model, const nb::dict& values)
+{
+  return MakeTimeSettings(model, values)->DescribeModel().ColumnsAreIndependent;
+}
+
 int FindStep(const std::string& model, const nb::dict& values, double time, int last)
 {
   return MakeTimeSettings(model, values)->FindStep(time, last);

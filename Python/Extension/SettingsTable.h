@@ -40,6 +40,9 @@ nanobind::object FindTimes(const std::string& model, const nanobind::dict& value
 /// The time step that a model with these settings takes.
 double FindTimeStep(const std::string& model, const nanobind::dict& values);
 
+/// ModelTraits::ColumnsAreIndependent.
+bool HasIndependentColumns(const std::string& model, const nanobind::dict& values);
+
 /// The step of the last published time at or before `time`, of a run that ends at step `last`.
 int FindStep(const std::string& model, const nanobind::dict& values, double time, int last);
 

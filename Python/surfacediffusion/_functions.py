@@ -189,14 +189,6 @@ def _run(
         return runner.finish(run, [given], lambda found: make(run, found[0]), progress, history)
 
 
-def _are_independent(name: str, runner: Runner) -> bool:
-    """Whether no column of the data depends on the others or on its number, given the points that
-    are missing."""
-    noise = settings_of(name)["initial_fill"].words.index("Noise")
-    return name == "heat" and not runner.settings.get("AutomaticFidelity") and (
-        runner.settings.get("InitialFill") != noise)
-
-
 def _take(name: str, values: Any, surface: Surface, on_faces: bool | None) -> tuple[Any, bool]:
     """The data, and whether they are on faces."""
     found = find_on_faces(name, values, surface, on_faces)
@@ -247,7 +239,7 @@ def _diffusion(
         return replace(result, values=_in_shape(result.values, values))
 
     is_array = name in _ARRAYS_ALONE and not form
-    if data.shape[1] > PANEL and is_array and _are_independent(name, runner):
+    if data.shape[1] > PANEL and is_array and _core.has_independent_columns(name, runner.settings):
         stays = on_faces and runner.settings.get("ResultOnCells", True)
         rows = surface.n_faces if stays else surface.n_points
         output = np.empty((rows, data.shape[1]), dtype=find_result_type(data, dtype))

@@ -54,6 +54,8 @@ class Heat(unittest.TestCase):
                         {"fidelity_weight": 1.0, "initial_fill": "Input", "mask": mask, "time_step": 1},
                         {"mode": "SteadyState", "hold_known_values": True},
                         {"initial_fill": "Noise", "time_step": 1},
+                        {"automatic_fidelity": True, "mode": "SteadyState"},
+                        {"automatic_fidelity": True, "time_step": 1, "number_of_time_steps": 2},
                         {"dtype": np.float64, "fixed": ~mask & False, "time_step": 1}):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")

@@ -98,6 +98,10 @@ StepReport LinearDiffusion::Advance(const ProgressMonitor& progress)
   {
     this->Prepare(progress.Part(0.0, setup));
   }
+  else if (this->Options.SharesSolver)
+  {
+    this->System.SetUpSolver(progress.Part(0.0, 0.0));
+  }
   const Eigen::Index columns = this->U.cols();
   for (Eigen::Index first = 0; first < columns; first += ColumnPanel)
   {

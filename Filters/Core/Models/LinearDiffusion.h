@@ -39,6 +39,7 @@ public:
     Scheme TimeScheme = Scheme::SDIRK2;
     /// Up to here a residual above the tolerance of the solver is not reported as missed.
     double SufficientResidual = 0.0;
+    bool SharesSolver = false; ///< with other models: each step sets its matrix
 
     /// The factor of K in the matrix: both stages of SDIRK2 share M + gamma dt K with
     /// gamma = 1 - 1/sqrt(2) (R. Alexander, SIAM J. Numer. Anal. 14, 1977).

@@ -94,8 +94,7 @@ void TikhonovDeblurring::Prepare(const ProgressMonitor& progress)
   this->Assembly->Fill(this->Preconditioner, (this->FidelityWeight * mean) * mesh.ControlAreas(),
     1.0, this->Coefficients, nullptr, this->Parallel);
   this->InverseDiagonal = this->Preconditioner.diagonal().cwiseInverse();
-  this->Solver->SetMatrix(this->Preconditioner, progress.Part(0.0, 0.5));
-  this->Blur->Prepare(progress.Part(0.5, 1.0));
+  this->Blur->Prepare(progress);
   this->Prepared = true; // last: a preparation that was aborted is repeated
 }
 
@@ -110,8 +109,9 @@ StepReport TikhonovDeblurring::Advance(const ProgressMonitor& progress)
 {
   if (!this->Prepared)
   {
-    this->Prepare(progress.Part(0.0, 0.3));
+    this->Prepare(progress.Part(0.0, 0.15));
   }
+  this->Solver->SetMatrix(this->Preconditioner, progress.Part(0.15, 0.3)); // others may share it
   const TriangleMesh& mesh = this->Assembly->Mesh();
   // Values are measured from the mean: the errors of a solve are relative to the contrast then.
   Eigen::RowVectorXd origin;
