@@ -585,6 +585,25 @@ TEST(HarmonicMapFilter, MoveVerticesDenoisesTheSurface)
   }
 }
 
+TEST(HarmonicMapFilter, AChangeOfTheVolumeIsAWarningWhileThePointsMove)
+{
+  auto filter = MakeFilter(Sphere(1));
+  filter->SetTimeStep(1.0);
+  Messages messages(filter);
+  filter->Update();
+  EXPECT_TRUE(messages.Warnings.empty());
+  filter->MoveVerticesOn();
+  filter->Update();
+  EXPECT_GT(std::abs(filter->GetVolumeAfter() / filter->GetVolumeBefore() - 1.0), 0.02);
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_NE(messages.Warnings[0].find("MoveVertices changes the volume by "), std::string::npos);
+  EXPECT_NE(
+    messages.Warnings[0].find("set NumberOfTimeSteps or TimeStep lower"), std::string::npos);
+  filter->SetNumberOfTimeSteps(0);
+  filter->Update();
+  EXPECT_EQ(messages.Warnings.size(), 1u);
+}
+
 TEST(HarmonicMapFilter, MovedPointsKeepTheirPrecisionAndMergedOnesStayTogether)
 {
   auto grid = Grid(6, 6);
