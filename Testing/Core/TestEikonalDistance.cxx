@@ -174,6 +174,22 @@ TEST(EikonalDistance, OfPiecesWithinLargeTrianglesIsExactInAPlane)
   EXPECT_NEAR(fromLine[3], 2.0 * side, 1e-3);
 }
 
+TEST(EikonalDistance, OfAVertexOfANeedleStartsThere)
+{
+  // A square whose first triangle is a needle along a side
+  const Surface square =
+    MakeSurface({ { 0x1.3354e5cd91044p+1, 0x1.b434ace141e0bp-1, -0x1.845dfb84c94bbp-3 },
+                  { 0x1.df52ce91b9c8bp+0, 0x1.5f24c24bb8ce0p-6, -0x1.d64df5f74bfd0p-7 },
+                  { 0x1.5c37030f31fc0p+1, -0x1.f25b1be39237ep-2, 0x1.167ede4f45c25p-3 },
+                  { 0x1.9fe28193e61bep+1, 0x1.601bf1ba35fcap-2, -0x1.41e8f7583b264p-5 },
+                  { 0x1.1961ae216e6b1p+1, 0x1.112333117526ap-1, -0x1.f56a841ce71d2p-4 } },
+      { { 0, 4, 1 }, { 0, 1, 2 }, { 0, 2, 3 } });
+  const std::vector<double> found = Fronts(square).FromCorner(0, 0);
+  EXPECT_EQ(found[0], 0.0);
+  EXPECT_NEAR(found[1], 1.0, 1e-3);
+  EXPECT_NEAR(found[3], 1.0, 1e-3);
+}
+
 // A small part beside a large one is refined by its own size.
 TEST(EikonalDistance, OfPartsDoesNotDependOnOtherParts)
 {

@@ -230,30 +230,28 @@ void EikonalDistance::AppendParts(const SourcePiece& piece, std::vector<SourcePi
   }
   constexpr double roundOff = 1e-12;
   const std::vector<Part>& parts = this->Parts[static_cast<std::size_t>(piece.Triangle)];
-  if (parts.empty()) // they have no area: the nearest corner that others have
+  // The nearest corner that other triangles have, too: of a point there, and of a triangle without area
+  Index nearest = -1; // of Fine
+  double largest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a)
   {
-    Index nearest = -1; // of Fine
-    double largest = 0.0;
-    for (std::size_t a = 0; a < 3; ++a)
+    const Index v = this->FineVertices[static_cast<std::size_t>(
+      this->Mesh->TriangleVertices()(piece.Triangle, static_cast<Eigen::Index>(a)))];
+    if (v >= 0 && piece.From[a] > largest)
     {
-      const Index v = this->FineVertices[static_cast<std::size_t>(
-        this->Mesh->TriangleVertices()(piece.Triangle, static_cast<Eigen::Index>(a)))];
-      if (v >= 0 && piece.From[a] > largest)
-      {
-        nearest = this->Fine->VertexCorners()[static_cast<std::size_t>(
-          this->Fine->VertexCornersBegin()[static_cast<std::size_t>(v)])];
-        largest = piece.From[a];
-      }
+      nearest = this->Fine->VertexCorners()[static_cast<std::size_t>(
+        this->Fine->VertexCornersBegin()[static_cast<std::size_t>(v)])];
+      largest = piece.From[a];
     }
-    if (nearest >= 0)
-    {
-      SourcePiece corner = piece;
-      corner.Triangle = nearest / 3;
-      corner.From = { 0.0, 0.0, 0.0 };
-      corner.From[static_cast<std::size_t>(nearest % 3)] = 1.0;
-      corner.To = corner.From;
-      pieces.push_back(corner);
-    }
+  }
+  if (nearest >= 0 && (parts.empty() || (largest == 1.0 && piece.From == piece.To)))
+  {
+    SourcePiece corner = piece;
+    corner.Triangle = nearest / 3;
+    corner.From = { 0.0, 0.0, 0.0 };
+    corner.From[static_cast<std::size_t>(nearest % 3)] = 1.0;
+    corner.To = corner.From;
+    pieces.push_back(corner);
     return;
   }
   const Eigen::Map<const Eigen::Vector3d> from(piece.From.data());
@@ -288,7 +286,7 @@ void EikonalDistance::AppendParts(const SourcePiece& piece, std::vector<SourcePi
         end == 1.0 ? piece.ToPoint : -1, piece.Label });
     }
   }
-  if (piece.From == piece.To)
+  if (piece.From == piece.To && !parts.empty())
   {
     pieces.push_back(whole);
   }
