@@ -234,10 +234,14 @@ FieldSummary InputFields::Summarize() const
   return summary;
 }
 
+Word InputFields::NamedArray(const char* kind, const std::string& name)
+{
+  return Word::Array(kind, name.empty() ? "" : " \"" + name + "\"");
+}
+
 Word InputFields::DataWord() const
 {
-  return Word::Array(this->DataAreTerms ? "DataTermArray" : "InputArray",
-    this->Name.empty() ? "" : " \"" + this->Name + "\"");
+  return NamedArray(this->DataAreTerms ? "DataTermArray" : "InputArray", this->Name);
 }
 
 Fields InputFields::Read() const
@@ -289,8 +293,8 @@ Fields InputFields::Read() const
   fields.Mask = { ReadFlags(this->Mask.Values), this->Mask.OnCells };
   fields.Fixed = { ReadFlags(this->Fixed.Values), this->Fixed.OnCells };
   fields.FidelityFactors.OnCells = this->FidelityFactors.OnCells;
-  fields.Seeds =
-    AsLabels({ ReadNumbers(this->Seeds.Values), this->Seeds.OnCells }, Word::Array("SeedArray"));
+  fields.Seeds = AsLabels({ ReadNumbers(this->Seeds.Values), this->Seeds.OnCells },
+    NamedArray("SeedArray", this->SeedsName));
   if (fields.HasCells())
   {
     fields.NumberOfCells = static_cast<Index>(this->Surface->NumberOfFaces());
@@ -305,8 +309,8 @@ Fields InputFields::Read() const
     fields.Directions = { Eigen::Map<const Points>(
                             given->data(), static_cast<Eigen::Index>(given->shape(0)), 3),
       this->Directions.OnCells };
-    RequireFiniteDirections(
-      fields.Directions.Values, fields.Directions.OnCells, Word::Array("DirectionArray"));
+    RequireFiniteDirections(fields.Directions.Values, fields.Directions.OnCells,
+      NamedArray("DirectionArray", this->DirectionsName));
     if (this->Directions.OnCells)
     {
       fields.Directions.Values = ReadOnTriangles<Points>(*this->Surface, *given);

@@ -115,7 +115,8 @@ public:
   Located<std::optional<FactorArray>> Seeds; ///< labels, 0 = free
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
-  std::string Name; ///< of the data, for messages; may be empty
+  std::string Name, DirectionsName,
+    SeedsName; ///< of the data and so on, for messages; may be empty
   std::string Block; ///< the name of the surface among several, likewise
 
   std::shared_ptr<const PointSamples> Samples; ///< in place of Data
@@ -144,6 +145,7 @@ public:
   Fingerprint Version() const;
 
 private:
+  static Word NamedArray(const char* kind, const std::string& name);
   Word DataWord() const;
 
   int FirstColumn = 0;

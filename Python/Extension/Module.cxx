@@ -192,12 +192,15 @@ NB_MODULE(_core, m)
       "between"_a, "faces"_a)
     .def(
       "set_names",
-      [](InputFields& self, const std::string& data, const std::string& block)
+      [](InputFields& self, const std::string& data, const std::string& block,
+        const std::string& directions, const std::string& seeds)
       {
         self.Name = data;
         self.Block = block;
+        self.DirectionsName = directions;
+        self.SeedsName = seeds;
       },
-      "data"_a, "block"_a)
+      "data"_a, "block"_a, "directions"_a, "seeds"_a)
     .def("columns", &InputFields::Columns, "first"_a, "count"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")

@@ -233,7 +233,7 @@ def make_core(fields: Fields, block: Block) -> None:
         block.core, data, 0 if data is None else data_components(data), flags["mask"], flags["fixed"],
         _as_numbers(fields.direction.values), _as_numbers(fields.rates.values),
         _as_numbers(fields.fidelity.values), _as_numbers(fields.seeds.values), fields.data_are_terms, places)
-    fields.core.set_names(fields.name(), block.name)
+    fields.core.set_names(fields.name(), block.name, fields.name("direction"), fields.name("seeds"))
     if fields.samples is not None:
         fields.core.set_samples(
             fields.samples.places, fields.samples.values, fields.samples.weights, fields.samples.name)
