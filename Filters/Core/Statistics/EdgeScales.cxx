@@ -27,7 +27,7 @@ constexpr double ShortestLength = 2.0;
 constexpr double UsualLength = 4.0;
 constexpr double LongestLength = 24.0;
 
-constexpr Index LargestSample = 3000;
+constexpr Index LargestSampleOfScales = 3000;
 constexpr int DiskRadius = 4; ///< in edges
 constexpr Eigen::Index SmallestDisk = 8;
 /// A disk has a jump if the variance of its residual is half a standard deviation above that of
@@ -150,7 +150,7 @@ public:
     double area = 0.0, withoutJump = 0.0;
     Points offsets;
     Values deviations;
-    for (const Index i : this->Data.SampleVertices(LargestSample))
+    for (const Index i : this->Data.SampleVertices(LargestSampleOfScales))
     {
       this->ReadDisk(rings.FindDisk(i, DiskRadius), offsets, deviations);
       if (offsets.rows() >= SmallestDisk)

@@ -30,7 +30,9 @@ PlaneCoordinates InPlane(const Eigen::Ref<const Points>& offsets)
   const Eigen::Matrix3d spread = offsets.transpose() * offsets;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread);
   const double size = std::sqrt(axes.eigenvalues()[2]);
-  if (!(axes.eigenvalues()[1] > 1e-6 * axes.eigenvalues()[2]) || !(size > 0.0))
+  // Around a corner of a cube they spread alike in all directions.
+  const bool isPlane = axes.eigenvalues()[1] > (1.0 + 1e-6) * axes.eigenvalues()[0];
+  if (!isPlane || !(axes.eigenvalues()[1] > 1e-6 * axes.eigenvalues()[2]) || !(size > 0.0))
   {
     return PlaneCoordinates();
   }
