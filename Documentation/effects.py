@@ -120,8 +120,9 @@ EFFECTS = {
                "less is left of the noise."),
     ),
     "distance": (
-        Effect("method", ("Eikonal", "Heat"), "Distances from three points, in bands: fronts that meet have a "
-               "kink by fast marching and are round by the heat method.", {"sources": [200, 900, 1700]}, "bumps"),
+        Effect("method", ("Exact", "Eikonal", "Heat"), "Distances from three points, in bands: fronts that "
+               "meet have a kink, exactly and by fast marching, and are round by the heat method. Automatic "
+               "is Exact here.", {"sources": [200, 900, 1700]}, "bumps"),
     ),
     "random_field": (
         Effect("fwhm", (0.2, 0.4, 0.8), "Fields of one seed and several widths."),

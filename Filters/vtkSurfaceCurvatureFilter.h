@@ -15,7 +15,7 @@
  * and a plane, where it is not defined, 0, too. The normals are those of the triangles. Triangles
  * with another orientation than their neighbours count as turned, so that signs follow the larger
  * part of the area, and are counted in a warning. On surfaces with one side, such as a Moebius strip,
- * the sign cannot be told, and H is positive. Curvatures that the rounding of the coordinates may
+ * H has no sign, and is positive. Curvatures that the rounding of the coordinates may
  * cause, of single precision if all coordinates are such numbers, are 0.
  *
  * - FWHM 0: the scale of the mesh. A quadratic polynomial is fitted to the points of at most two

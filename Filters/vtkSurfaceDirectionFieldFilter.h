@@ -11,8 +11,8 @@
  *
  * - PrincipalCurvature: the minimum-curvature direction (Minimum) or the maximum-curvature
  *   direction (Maximum), from the derivative of the normals. The heat equation first smooths the
- *   normals over SmoothingLength. Cells where both are alike, as far as the rounding of the
- *   coordinates tells, get zero vectors, with a warning that counts them.
+ *   normals over SmoothingLength. Cells where both are alike, up to what the rounding of the
+ *   coordinates may cause, get zero vectors, with a warning that counts them.
  * - CurvatureAligned: the same where the principal curvatures differ distinctly, continued smoothly
  *   elsewhere.
  * - Smooth: the smoothest line field, which is the lowest mode of the connection Laplacian (F.

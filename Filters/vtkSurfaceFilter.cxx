@@ -60,27 +60,34 @@ bool HasVisibleCells(vtkPolyData* data)
       [](unsigned char flag) { return (flag & absent) == 0; });
 }
 
-/// What a filter reads of its inputs, and when the filter and others of its inputs were modified. (ParaView
-/// copies the input for each time.) own: the time of the filter.
+/// What a filter reads of its inputs, of how many pieces it was asked for one, and when the filter and
+/// others of its inputs were modified. (ParaView copies the input for each time.) own: the time of the
+/// filter.
 Fingerprint FindState(vtkAlgorithm* filter, vtkMTimeType own)
 {
   Fingerprint state;
   state.AddNumber(static_cast<std::uint64_t>(own));
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
   {
-    for (vtkDataObject* const data : ListLeaves(filter->GetInputDataObject(port, 0)))
+    vtkDataObject* const input = filter->GetInputDataObject(port, 0);
+    const std::vector<int> surfaces = ListSurfaces(input);
+    const std::vector<vtkDataObject*> leaves = ListLeaves(input);
+    for (std::size_t i = 0; i < leaves.size(); ++i)
     {
-      vtkPolyData* const surface = port == 0 ? vtkPolyData::SafeDownCast(data) : nullptr;
+      vtkPolyData* const surface = port == 0 ? vtkPolyData::SafeDownCast(leaves[i]) : nullptr;
       if (surface)
       {
-        state.Add(FingerprintPiece(filter, { 0, surface, nullptr }));
+        state.Add(FingerprintPiece(filter, { surfaces[i], surface, nullptr }));
       }
       else
       {
-        state.AddNumber(static_cast<std::uint64_t>(data->GetMTime()));
+        state.AddNumber(static_cast<std::uint64_t>(leaves[i]->GetMTime()));
       }
     }
   }
+  vtkInformation* const asked = filter->GetInputInformation(0, 0);
+  state.AddNumber(static_cast<std::uint64_t>(
+    asked ? asked->Get(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES()) : 0));
   return state;
 }
 
@@ -448,7 +455,9 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
     vtkInformation* const array = this->GetInputArrayInformation(index);
     return array->Has(vtkDataObject::FIELD_NAME()) ? array->Get(vtkDataObject::FIELD_NAME()) : "";
   };
-  task.Rules = { nameAt(1), nameAt(5) };
+  // Fixed points, seeds, and the sources of distances are marks, of any type.
+  const bool hasSources = this->IsA("vtkSurfaceDistanceFilter") != 0;
+  task.Rules = { nameAt(1), nameAt(5), { nameAt(3), nameAt(6), hasSources ? nameAt(0) : "" } };
   task.FindLength = [this](double meanEdgeLength, Sentence& explanation)
   { return this->FindRefinement(meanEdgeLength, explanation); };
   task.Complete = [this](const std::function<void()>& step)

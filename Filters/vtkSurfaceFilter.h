@@ -159,10 +159,10 @@ public:
    * always bisected next, in all its triangles at once: flat faces stay flat, sharp edges sharp,
    * and no crack opens. The output then has triangles in place of polygons and strips, with the
    * data of their cells and the cell array `vtkOriginalCellIds`, the ids of these. Data of points
-   * are linear along the edges, except that integers of one component, which are labels and marks,
-   * become the smaller of two; what is between a masked point and another one is masked, and has no
-   * weight between one of weight 0 and another one. They are no measurements: interpolation and
-   * estimates of noise do not count them. Global ids, ghost cells and hidden cells are left out. With
+   * are linear along the edges, except that integers of one component, and fixed points, seeds and
+   * sources, become the smaller of two, or 0 beside 0; what is between a masked point and another
+   * one is masked, and what is beside a weight of 0 has weight 0. They are no measurements, and no
+   * estimate of noise counts them. Global ids, ghost cells and hidden cells are left out. With
    * MergeCoincidentPoints, copies of a point stay copies.
    */
   vtkSetMacro(RefineTo, double);

@@ -49,7 +49,7 @@
  * decomposed; with more, traces follow from determinants. Of few values cross-validation often
  * takes noise for signal: if up to 300 values would be all but held, mu is at least that with the
  * greatest restricted likelihood (G. Wahba, Ann. Statist. 13, 1985). Fewer than three places with
- * values are held. Connected parts have nothing to do with each other: each has its own mu and s.
+ * values are held, and fewer than five on open flat parts. Connected parts have nothing to do with each other: each has its own mu and s.
  *
  * **The mean.** With CorrelationLength 0, constants have no energy. With CorrelationLength 1/kappa,
  * values are measured from their weighted mean, to which u returns beyond that distance from the
@@ -58,19 +58,24 @@
  *
  * **Standard errors.** u is the mean of a Gaussian field with the precision
  * (mu Q + sum w_i b_i b_i^T)/s^2, where Q is the matrix of the energy (F. Lindgren, H. Rue,
- * J. Lindstrom, J. R. Statist. Soc. B 73, 2011), and `<name>Error` its standard error at each point:
- * a band of 1.645 of them on each side holds 90 %. s is NoiseLevel, or estimated from the misfit and
- * from repeats at one place; NaN if the values leave none. With an estimated s the standard deviation
- * is multiplied by Student's quantile over the normal one. With up to 300 values and AutomaticSmoothing
- * it is the root of the mean square of the error over the posterior distribution of mu, whose prior is
- * uniform in the share of noise (M. Daniels, Canad. J. Statist. 27, 1999). Fields that are smoother
- * than splines are covered by more. Correlated noise is taken for signal; a warning reports values
- * without white noise. With CorrelationLength the error of the mean m is added, (1 - a_i)^2 Var(m), where a is the fit of
+ * J. Lindstrom, J. R. Statist. Soc. B 73, 2011), and `<name>Error` its standard error at each point,
+ * infinite where the values leave the slope open, as one or two and those on a line do on flat pieces
+ * with Free. A band of 1.645 standard errors on each side holds 90 %. s is NoiseLevel, or estimated
+ * from the misfit and from repeats at one place; NaN if the values leave none. With an estimated s the
+ * standard deviation is multiplied by Student's quantile over the normal one. With up to 300 values and
+ * AutomaticSmoothing it is the root of the mean square of the error over the posterior distribution of
+ * mu, whose prior is uniform in the share of noise (M. Daniels, Canad. J. Statist. 27, 1999). Fields
+ * that are smoother than splines are covered by more. Correlated noise is taken for signal; a warning
+ * reports values without white noise. With
+ * CorrelationLength the error of the mean m is added, (1 - a_i)^2 Var(m), where a is the fit of
  * values that are all 1. On cells it is the mean of the corners, an upper bound.
  *
  * **Boundary.** Natural: du/dn = 0 and d(Laplace u)/dn = 0, so that u becomes flat towards the
  * boundary. Free: the Hessian energy (O. Stein, A. Jacobson, M. Wardetzky, E. Grinspun, ACM Trans.
- * Graph. 39, 2020), which lets linear functions on flat pieces come back exactly.
+ * Graph. 39, 2020), which continues slopes and lets linear functions on flat pieces come back exactly.
+ * Automatic: Free on connected parts with a boundary, Natural on closed ones and with diffusivities
+ * other than 1 or IntrinsicDelaunay. The velocity of a planar wave of 0.6 m/s from 60 electrodes with
+ * noise of 1 ms is 0.60 m/s near the boundary with Free, and 0.8 to 1.1 m/s with Natural.
  *
  * **Scheme.** Linear elements with lumped masses, Q = (kappa^2 M + K) M^-1 (kappa^2 M + K), whose
  * error falls with order 2. Cotangents of needles count up to 1e4, since Q squares them. The system
@@ -112,7 +117,8 @@ public:
   enum BoundaryType
   {
     BOUNDARY_NATURAL,
-    BOUNDARY_FREE
+    BOUNDARY_FREE,
+    BOUNDARY_AUTOMATIC
   };
 
   ///@{
@@ -166,12 +172,13 @@ public:
 
   ///@{
   /**
-   * The condition at the boundary of the surface, see above. Default: Natural. Free takes neither
+   * The condition at the boundary of the surface, see above. Default: Automatic. Free takes neither
    * diffusivities other than 1 nor IntrinsicDelaunay.
    */
   SURFACEDIFFUSION_CHOICE(Boundary);
   void SetBoundaryToNatural() { this->SetBoundary(BOUNDARY_NATURAL); }
   void SetBoundaryToFree() { this->SetBoundary(BOUNDARY_FREE); }
+  void SetBoundaryToAutomatic() { this->SetBoundary(BOUNDARY_AUTOMATIC); }
   ///@}
 
   /**

@@ -11,7 +11,6 @@
 #include "vtkInformation.h"
 #include "vtkObjectFactory.h"
 
-#include <cmath>
 #include <vector>
 
 using namespace SurfaceDiffusion;
@@ -45,10 +44,6 @@ double vtkTuringTextureFilter::FindRefinement(double meanEdgeLength, Sentence& e
   }
   const TextureSettings& settings = this->GetTextureSettings();
   const double size = settings.FeatureSize;
-  if (!(size > 0.0 && std::isfinite(size)))
-  {
-    return 0.0;
-  }
   const double length = settings.EdgeLengthForFeatures(meanEdgeLength);
   if (length > 0.0)
   {

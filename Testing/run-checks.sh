@@ -1,8 +1,9 @@
 #!/bin/sh
 # Usage: run-checks.sh [CHECK...]
 # The checks before a release, which take hours and are not part of run-tests.sh: all tests under the
-# sanitizers, ten minutes of fuzzing, clang with libc++, all meshes, other versions of VTK, and the site. Without arguments all run,
-# also if one fails. Each that passes is entered into Testing/CHECKS.md with its day and its commit.
+# sanitizers, ten minutes of fuzzing, clang with libc++, bounds of round-off with other compilers, flags
+# and instructions, all meshes, other versions of VTK, and the site. Without arguments all run, also if
+# one fails. Each that passes is entered into Testing/CHECKS.md with its day and its commit.
 # Logs are in build/checks. The exit code is 1 if a check has failed.
 set -eu
 cd "$(dirname "$0")/.."
@@ -25,9 +26,37 @@ build()
   cmake --build --preset "$1"
 }
 
+# The tests of the core in builds that round otherwise. Each writes how much of every bound it uses.
+bounds()
+{
+  mkdir -p build/checks/bounds
+  rm -f build/checks/bounds/*
+  for kind in baseline o1 native no-fma no-avx2 clang; do
+    flags="-O3"
+    compiler=c++
+    case $kind in
+      o1) flags="-O1" ;;
+      native) flags="-O3 -march=native" ;;
+      no-fma) flags="-O3 -march=native -mno-fma" ;;
+      no-avx2) flags="-O3 -march=native -mno-avx2 -mno-avx512f" ;;
+      clang) compiler=clang++ ;;
+    esac
+    cmake --preset core -B "build-bounds/$kind" -D CMAKE_CXX_COMPILER="$compiler" \
+      -D CMAKE_CXX_FLAGS_RELEASE="$flags -DNDEBUG" -D SURFACEDIFFUSION_MESH_DIR="$data/meshes" &&
+      cmake --build "build-bounds/$kind" --target TestSurfaceDiffusionCore &&
+      SURFACEDIFFUSION_BOUND_SHARES="$PWD/build/checks/bounds/$kind" \
+        "build-bounds/$kind/bin/TestSurfaceDiffusionCore" --gtest_brief=1 || return 1
+  done
+  /usr/bin/python3 Testing/bound_shares.py "$PWD" build/checks/bounds/*
+}
+
 run()
 {
   case $1 in
+    bounds)
+      bounds
+      return
+      ;;
     fuzz)
       build fuzz && mkdir -p build/checks/corpus
       build-fuzz/bin/FuzzSurfaceDiffusionCore -max_total_time=600 -print_final_stats=1 \
@@ -53,7 +82,7 @@ run()
   xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "$1" -j2
 }
 
-[ $# -gt 0 ] || set -- fuzz libcxx libcxx-numpy sanitize sanitize-more tsan tsan-filters tsan-numpy long versions site
+[ $# -gt 0 ] || set -- bounds fuzz libcxx libcxx-numpy sanitize sanitize-more tsan tsan-filters tsan-numpy long versions site
 status=0
 for check in "$@"; do
   echo "== $check"

@@ -46,8 +46,7 @@ seen = np.flatnonzero(points[:, 1] < 13)
 chosen = random.choice(seen, 200, replace=False)
 electrodes = points[chosen] + random.normal(scale=0.5, size=(200, 3))
 times = time[chosen] + random.normal(scale=2.0, size=200)
-result = interpolate(atrium, times, electrodes, maximum_distance=5.0, boundary="Free",
-                     compute_error=True)
+result = interpolate(atrium, times, electrodes, maximum_distance=5.0, compute_error=True)
 found, error = result.values, result.error
 rms = np.sqrt(np.mean((found - time)[seen] ** 2))
 print(f"error {rms:.1f} ms of {time.max():.0f} ms")

@@ -6,7 +6,7 @@
 //     u_t = div(grad u / |grad u|) + u |grad u|,   u(0) = the normals of the noisy surface,
 //
 // which is the harmonic map flow with exponent p = 1: it removes noise and preserves creases. Then
-// the points are moved so that the normals of the triangles match the regularised normals. Times
+// the points are moved so that the triangles turn as their normals have turned. Times
 // are in mean edge lengths.
 //
 //     harmonic_map                a cube with noise, generated here

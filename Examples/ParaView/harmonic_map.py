@@ -5,8 +5,9 @@
     PV_PLUGIN_PATH=<folder of SurfaceDiffusion.so> pvpython harmonic_map.py [surface.vtp]
 
 The normals diffuse as unit vectors (Exponent 1 removes noise and preserves creases), and with
-MoveVertices the points are moved to fit them. The program writes harmonic_map.png: the surface, the
-same points shaded with the regularised normals, and the moved points.
+MoveVertices the points are moved so that the triangles turn with them. The program writes
+harmonic_map.png: the surface, the same points shaded with the regularised normals, and the moved
+points.
 
 Try next: Exponent=2, which rounds the edges; GenerateTimeSteps=1, which lets ParaView's clock play
 the run.

@@ -9,14 +9,12 @@
 #include "Conversion/TupleRange.h"
 #include "Distributed/ContentHash.h"
 #include "Distributed/InterfacePoints.h"
+#include "Run/FieldChecks.h"
 
 #include "vtkDataArray.h"
 #include "vtkPolyData.h"
 
-#include <cmath>
-#include <limits>
-#include <sstream>
-#include <stdexcept>
+#include <string>
 
 namespace SurfaceDiffusion
 {
@@ -24,15 +22,15 @@ namespace SurfaceDiffusion
 namespace
 {
 
-std::string NameOf(vtkDataArray* array)
+Word NamedArray(const char* kind, vtkDataArray* array)
 {
-  return array->GetName() ? array->GetName() : "";
+  return Word::Array(
+    kind, array ? std::string(" \"") + (array->GetName() ? array->GetName() : "") + "\"" : "");
 }
 
 Word NameOfData(const InputFields& arrays)
 {
-  return Word::Array(arrays.DataAreTerms ? "DataTermArray" : "InputArray",
-    " \"" + NameOf(arrays.Data.Values) + "\"");
+  return NamedArray(arrays.DataAreTerms ? "DataTermArray" : "InputArray", arrays.Data.Values);
 }
 
 std::vector<char> ReadFlags(vtkDataArray* array)
@@ -55,40 +53,12 @@ std::vector<double> ReadFactors(vtkDataArray* array)
   return factors;
 }
 
-std::vector<Index> ReadSeeds(const LocatedArray& given)
-{
-  vtkDataArray* const array = given.Values;
-  const char* const place = given.OnCells ? "cell" : "point";
-  std::vector<Index> seeds;
-  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
-  {
-    const double label = array->GetComponent(i, 0);
-    if (!(label >= 0.0 && label <= std::numeric_limits<Index>::max() && label == std::floor(label)))
-    {
-      std::ostringstream text;
-      text << "SeedArray \"" << NameOf(array) << "\" is " << label << " at " << place << ' ' << i
-           << "; allowed: the labels 1 to NumberOfRegions, and 0 for " << place
-           << "s that are free";
-      throw std::runtime_error(text.str());
-    }
-    seeds.push_back(static_cast<Index>(label));
-  }
-  return seeds;
-}
-
 Points ReadDirections(vtkDataArray* array)
 {
   Points vectors(array->GetNumberOfTuples(), 3);
   for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
   {
     array->GetTuple(i, vectors.row(i).data());
-    if (vectors.row(i).array().isInf().any())
-    {
-      std::ostringstream text;
-      text << "DirectionArray \"" << NameOf(array) << "\" is infinite at tuple " << i
-           << "; allowed: finite values and NaN";
-      throw std::runtime_error(text.str());
-    }
   }
   return vectors;
 }
@@ -100,17 +70,10 @@ Values ReadRates(vtkDataArray* array, const TriangleCells& cells)
   {
     for (int k = 0; k < 4; ++k)
     {
-      const double rate = array->GetComponent(cells[t], k);
-      if (!(std::isfinite(rate) && rate >= 0.0))
-      {
-        std::ostringstream text;
-        text << "DiffusionRateArray is " << rate << " at cell " << cells[t]
-             << "; allowed: finite numbers, 0 or more";
-        throw std::runtime_error(text.str());
-      }
-      rates(static_cast<Eigen::Index>(t), k) = rate;
+      rates(static_cast<Eigen::Index>(t), k) = array->GetComponent(cells[t], k);
     }
   }
+  RequireRates(rates, [&](Index t) { return cells[static_cast<std::size_t>(t)]; });
   return rates;
 }
 
@@ -220,7 +183,8 @@ Fields ReadFields(const InputFields& arrays, const TriangleCells& cells)
   fields.Mask = { ReadFlags(arrays.Mask.Values), arrays.Mask.OnCells };
   fields.Fixed = { ReadFlags(arrays.Fixed.Values), arrays.Fixed.OnCells };
   fields.FidelityFactors = { ReadFactors(arrays.Fidelity.Values), arrays.Fidelity.OnCells };
-  fields.Seeds = { ReadSeeds(arrays.Seeds), arrays.Seeds.OnCells };
+  fields.Seeds = AsLabels({ ReadFactors(arrays.Seeds.Values), arrays.Seeds.OnCells },
+    NamedArray("SeedArray", arrays.Seeds.Values));
   fields.Sources = arrays.Sources;
   fields.Speeds = { ReadFactors(arrays.Speeds.Values), arrays.Speeds.OnCells };
   fields.StartTimes = ReadFactors(arrays.StartTimes.Values);
@@ -241,6 +205,8 @@ Fields ReadFields(const InputFields& arrays, const TriangleCells& cells)
   if (arrays.Direction.Values)
   {
     fields.Directions = { ReadDirections(arrays.Direction.Values), arrays.Direction.OnCells };
+    RequireFiniteDirections(fields.Directions.Values, fields.Directions.OnCells,
+      NamedArray("DirectionArray", arrays.Direction.Values));
     if (fields.Directions.OnCells)
     {
       const Points ofCells = fields.Directions.Values;

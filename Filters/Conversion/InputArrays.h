@@ -35,7 +35,7 @@ private:
   SurfaceDiffusion::Problems& Problems;
 };
 
-/// The numeric array at `index`, whatever its size, with null values if the block has none or none
+/// The numeric array at `index`, of any size, with null values if the block has none or none
 /// was chosen.
 LocatedArray FindChosenArray(vtkAlgorithm* filter, int index, vtkPolyData* block);
 

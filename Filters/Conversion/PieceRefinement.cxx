@@ -36,9 +36,10 @@ bool IsInteger(vtkDataArray* array)
 }
 
 /// The array with a tuple more for each pair of parents. isMask: whether numbers other than 0 mean
-/// that a point is masked. isWeight: whether 0 means that it has no value.
+/// that a point is masked. isWeight: whether 0 means that it has no value. isMark: whether 0 means
+/// that it has no mark.
 vtkSmartPointer<vtkAbstractArray> Interpolate(vtkAbstractArray* from,
-  const std::vector<std::array<Index, 2>>& parents, bool isMask, bool isWeight)
+  const std::vector<std::array<Index, 2>>& parents, bool isMask, bool isWeight, bool isMark)
 {
   const vtkIdType count = from->GetNumberOfTuples();
   const auto more = static_cast<vtkIdType>(parents.size());
@@ -68,9 +69,13 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(vtkAbstractArray* from,
       {
         between = first == 0.0 ? second : first;
       }
-      else if (isWeight && (first == 0.0 || second == 0.0))
+      else if ((isWeight || isMark) && (first == 0.0 || second == 0.0))
       {
         between = 0.0;
+      }
+      else if (isMark && !std::isnan(between))
+      {
+        between = std::min(first, second);
       }
       else if (rounds)
       {
@@ -96,8 +101,10 @@ void InterpolatePointData(vtkPointData* from, vtkIdType points, vtkPointData* to
     {
       continue;
     }
-    const int added = to->AddArray(
-      Interpolate(array, parents, hasName(array, rules.Mask), hasName(array, rules.Weights)));
+    const bool isMark = std::any_of(rules.Marks.begin(), rules.Marks.end(),
+      [&](const std::string& name) { return hasName(array, name); });
+    const int added = to->AddArray(Interpolate(
+      array, parents, hasName(array, rules.Mask), hasName(array, rules.Weights), isMark));
     if (role >= 0)
     {
       to->SetActiveAttribute(added, role);
@@ -130,24 +137,7 @@ PieceRefinement::EdgeSum PieceRefinement::SumEdges(const std::vector<SurfacePiec
     {
       TriangleCells cells;
       const SurfaceArrays arrays = ReadSurface(pieces[p].Input, nullptr, false, cells);
-      std::vector<std::pair<Index, Index>> edges;
-      edges.reserve(static_cast<std::size_t>(arrays.Triangles.size()));
-      for (Eigen::Index t = 0; t < arrays.Triangles.rows(); ++t)
-      {
-        for (int a = 0; a < 3; ++a)
-        {
-          edges.emplace_back(
-            std::minmax({ arrays.Triangles(t, a), arrays.Triangles(t, (a + 1) % 3) }));
-        }
-      }
-      std::sort(edges.begin(), edges.end());
-      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-      std::vector<double> lengths;
-      for (const auto& [a, b] : edges)
-      {
-        lengths.push_back((arrays.Points.row(a) - arrays.Points.row(b)).norm());
-      }
-      const EdgeLengths counted = MeasureEdgeLengths(lengths);
+      const EdgeLengths counted = MeasureEdgeLengths(arrays.Points, arrays.Triangles);
       piece.SumOfEdges = counted.Sum;
       piece.NumberOfEdges = counted.Number;
     }

@@ -26,6 +26,8 @@ struct RefinementRules
 {
   std::string Mask; ///< what is between a masked point and another one is masked
   std::string Weights; ///< what is between a point of weight 0 and another one has weight 0
+  /// What is between two marked points has the smaller mark, and none beside a point without one.
+  std::vector<std::string> Marks;
 };
 
 /// Bisects the long edges of the surfaces of an update, see RefineEdges(). Edges that pieces of a

@@ -11,11 +11,8 @@
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkIdList.h"
-#include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkPolygon.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -100,12 +97,11 @@ bool ReadTriangles(vtkPolyData* input, Triangles& triangles, TriangleCells& cell
 
 /// The triangles of the cells that are not excluded and not ghosts, each with its cell.
 ///
-/// vtkTriangleFilter cuts most polygons alike: quads along the shorter diagonal that lies inside,
-/// others by the same ear cutting of vtkPolygon, and an array of cell ids would give the cells. But
-/// it silently drops polygons that ear cutting refuses, which leaves holes (VTK 9.2): all that
-/// intersect themselves, valid ones of size 1e-150 or 1e150, and half of a quad with a point twice.
-/// It also takes 60 times as long for quads and 7 times as long for triangles (7.5 s against 0.12 s
-/// for a million quads).
+/// vtkTriangleFilter silently drops polygons that the ear cutting of vtkPolygon refuses, which
+/// leaves holes (VTK 9.2): all that intersect themselves, valid ones of size 1e-150 or 1e150, and
+/// half of a quad with a point twice. It also takes 60 times as long for quads and 7 times as long
+/// for triangles (7.5 s against 0.12 s for a million quads), and its triangles of larger polygons are
+/// others than those of CutPolygon(), which the functions of arrays in Python have, too.
 ///
 /// Polygons are cut into triangles rather than given a Laplacian of their own (A. Bunge, P.
 /// Herholz, M. Kazhdan, M. Botsch, Computer Graphics Forum 39, 2020). Measured with theirs on
@@ -191,55 +187,22 @@ private:
     if (count == 3)
     {
       this->Add(cell, ids[0], ids[1], ids[2]);
+      return;
     }
-    else if (count == 4)
+    this->Polygon.clear();
+    for (vtkIdType i = 0; i < count; ++i)
     {
-      this->AddQuad(cell, ids);
+      this->Polygon.emplace_back(this->Coordinates.row(ids[i]));
     }
-    else if (count > 4)
-    {
-      this->AddByEarCutting(cell, count, ids);
-    }
-  }
-
-  void AddQuad(vtkIdType cell, const vtkIdType* ids)
-  {
-    const auto at = [&](int i) -> Eigen::RowVector3d { return this->Coordinates.row(ids[i]); };
-    for (const Corners& corners : CutQuad({ at(0), at(1), at(2), at(3) }))
+    for (const Corners& corners : CutPolygon(this->Polygon))
     {
       this->Add(cell, ids[corners[0]], ids[corners[1]], ids[corners[2]]);
     }
   }
 
-  void AddByEarCutting(vtkIdType cell, vtkIdType count, const vtkIdType* ids)
-  {
-    this->Polygon->PointIds->SetNumberOfIds(count);
-    this->Polygon->Points->SetNumberOfPoints(count);
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      this->Polygon->PointIds->SetId(i, i);
-      this->Polygon->Points->SetPoint(i, this->Coordinates.row(ids[i]).data());
-    }
-    this->Ears->Reset();
-    if (this->Polygon->EarCutTriangulation(this->Ears) && this->Ears->GetNumberOfIds() > 0)
-    {
-      for (vtkIdType i = 0; i + 2 < this->Ears->GetNumberOfIds(); i += 3)
-      {
-        this->Add(cell, ids[this->Ears->GetId(i)], ids[this->Ears->GetId(i + 1)],
-          ids[this->Ears->GetId(i + 2)]);
-      }
-      return;
-    }
-    for (vtkIdType i = 1; i + 1 < count; ++i) // it intersects itself or is flat: use a fan
-    {
-      this->Add(cell, ids[0], ids[i], ids[i + 1]);
-    }
-  }
-
   const Points& Coordinates;
   std::vector<unsigned char> Ghosts;
-  vtkNew<vtkPolygon> Polygon;
-  vtkNew<vtkIdList> Ears;
+  std::vector<Eigen::RowVector3d> Polygon;
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "Conversion/PieceRefinement.h"
 #include "Distributed/CellFlags.h"
 #include "Distributed/ContentHash.h"
+#include "Distributed/PieceArrays.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellArray.h"
@@ -12,6 +13,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
@@ -57,8 +59,9 @@ std::vector<int> FindReadAttributes(vtkAlgorithm* filter)
   return types;
 }
 
-/// Whether the user has selected the array as one of the filter's input arrays.
-bool IsSelected(vtkAlgorithm* filter, vtkAbstractArray* array)
+/// Whether the user has selected the array as one of the filter's input arrays, or of those that are not
+/// of flags.
+bool IsSelected(vtkAlgorithm* filter, vtkAbstractArray* array, bool flagsCount = true)
 {
   vtkInformationVector* const infos =
     filter->GetInformation()->Get(vtkAlgorithm::INPUT_ARRAYS_TO_PROCESS());
@@ -67,7 +70,8 @@ bool IsSelected(vtkAlgorithm* filter, vtkAbstractArray* array)
     vtkInformation* const info = infos->GetInformationObject(i);
     const char* const name =
       info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-    if (name && array->GetName() && std::strcmp(name, array->GetName()) == 0)
+    if ((flagsCount || !IsOfFlags(i)) && name && array->GetName() &&
+      std::strcmp(name, array->GetName()) == 0)
     {
       return true;
     }
@@ -90,14 +94,23 @@ bool IsActive(
 }
 
 /// An array that keeps its values on the way to process 0: the data objects that a controller
-/// sends hold vtkIdType in 32 bits.
-vtkSmartPointer<vtkAbstractArray> MakePackedArray(vtkAbstractArray* array, vtkIdType count)
+/// sends hold vtkIdType in 32 bits. Flags get one type, so that those of all pieces go together.
+vtkSmartPointer<vtkAbstractArray> MakePackedArray(
+  vtkAbstractArray* array, vtkIdType count, bool isOfFlags)
 {
-  if (!vtkIdTypeArray::SafeDownCast(array))
+  vtkSmartPointer<vtkDataArray> made;
+  if (isOfFlags && vtkDataArray::SafeDownCast(array))
+  {
+    made = vtkSmartPointer<vtkDoubleArray>::New();
+  }
+  else if (vtkIdTypeArray::SafeDownCast(array))
+  {
+    made = vtkSmartPointer<vtkTypeInt64Array>::New();
+  }
+  else
   {
     return MakeSimilarArray(array, count);
   }
-  auto made = vtkSmartPointer<vtkTypeInt64Array>::New();
   made->SetName(array->GetName());
   made->SetNumberOfComponents(array->GetNumberOfComponents());
   made->SetNumberOfTuples(count);
@@ -112,12 +125,13 @@ void PackAttributes(vtkAlgorithm* filter, vtkDataSetAttributes* from, vtkIdType 
   for (int a = 0; a < from->GetNumberOfArrays(); ++a)
   {
     vtkAbstractArray* const array = from->GetAbstractArray(a);
-    if (!(IsSelected(filter, array) || IsActive(types, from, array) || IsOfRefinement(array)) ||
+    const bool isOfData = IsSelected(filter, array, false) || IsActive(types, from, array);
+    if (!(isOfData || IsSelected(filter, array) || IsOfRefinement(array)) ||
       array->GetNumberOfTuples() < first + count)
     {
       continue;
     }
-    const auto copy = MakePackedArray(array, count);
+    const auto copy = MakePackedArray(array, count, !isOfData && !IsOfRefinement(array));
     copy->InsertTuples(0, count, first, array);
     const int index = to->AddArray(copy);
     for (const int type : types)

@@ -23,13 +23,15 @@ constexpr char End = '\0'; ///< of a text, which no name contains
 
 } // namespace
 
-SharedArray DescribeArray(const std::string& key, vtkDataArray* array, const char* place)
+SharedArray DescribeArray(
+  const std::string& key, vtkDataArray* array, const char* place, bool hasType)
 {
   const int components = array->GetNumberOfComponents();
   const std::string name = array->GetName() ? array->GetName() : "";
   return { key,
-    "\"" + name + "\" (" + array->GetDataTypeAsString() + ", " + std::to_string(components) +
-      (components == 1 ? " component" : " components") + ", on " + place + ")" };
+    "\"" + name + "\" (" + (hasType ? array->GetDataTypeAsString() + std::string(", ") : "") +
+      std::to_string(components) + (components == 1 ? " component" : " components") + ", on " +
+      place + ")" };
 }
 
 std::string FindDisagreement(const Processes& processes, const std::vector<SharedArray>& here)
@@ -86,7 +88,7 @@ std::string FindDisagreement(
       if (array.Values && piece.Input->GetNumberOfPoints() > 0)
       {
         arrays.push_back(DescribeArray(std::to_string(piece.Surface) + ' ' + std::to_string(i),
-          array.Values, array.OnCells ? "cells" : "points"));
+          array.Values, array.OnCells ? "cells" : "points", !IsOfFlags(i)));
       }
     }
   }

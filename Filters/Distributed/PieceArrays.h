@@ -20,8 +20,15 @@ struct SharedArray
   std::string Description; ///< name, numeric type, number of components, place
 };
 
-/// place: "points" or "cells".
-SharedArray DescribeArray(const std::string& key, vtkDataArray* array, const char* place);
+/// Whether an input array has flags, whose type has no meaning: MaskArray and FixedArray.
+constexpr bool IsOfFlags(int index)
+{
+  return index == 1 || index == 3;
+}
+
+/// place: "points" or "cells". hasType: whether others have to be of the type.
+SharedArray DescribeArray(
+  const std::string& key, vtkDataArray* array, const char* place, bool hasType = true);
 
 /// The error if two arrays of one key differ, among those of all processes; otherwise empty.
 /// Collective.

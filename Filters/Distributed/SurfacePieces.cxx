@@ -189,6 +189,13 @@ std::vector<vtkDataObject*> ListLeaves(vtkDataObject* data)
   return surfaces.Leaves;
 }
 
+std::vector<int> ListSurfaces(vtkDataObject* data)
+{
+  SurfaceList surfaces;
+  surfaces.Add(data, "", "");
+  return surfaces.OfLeaves;
+}
+
 InputDescription DescribeInput(vtkDataObject* input)
 {
   InputDescription description;

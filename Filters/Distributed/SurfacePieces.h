@@ -38,6 +38,9 @@ std::vector<SurfacePiece> CopyStructure(vtkDataObject* input, vtkDataObject* out
 /// The data without blocks that composite data consist of, or the data themselves. Null gives none.
 std::vector<vtkDataObject*> ListLeaves(vtkDataObject* data);
 
+/// The surface that each of them is a piece of, see SurfacePiece.
+std::vector<int> ListSurfaces(vtkDataObject* data);
+
 /// What messages say about the parts of an input.
 struct InputDescription
 {

@@ -42,7 +42,7 @@ struct CellState
   bool HasUnknown = false; ///< among the cells that take part
   Values Start = {}; ///< u_0, the initial state at the vertices
   std::vector<Index> Seeds = {}; ///< per cell, as in Fields; empty if seeds are not on cells
-  Vector Factors = {}; ///< of the fidelity, per cell; 0 where missing
+  Values Factors = {}; ///< of the fidelity, per cell and column or of all in one; 0 where missing
   std::vector<char> Held = {}; ///< per cell: a fixed one, or one whose vertices are all fixed
   std::shared_ptr<const CellDetail> Detail = nullptr; ///< null if the result needs none
   std::vector<char> Undetermined = {}; ///< per cell, empty if none is; see there
@@ -68,7 +68,7 @@ PointData MakePointDataOfCells(
   const Surface& surface, const Fields& fields, CellState& cells, const Reduction& processes);
 
 /// Multiply cells.Factors by those of the vertices of each cell; no entry: 1.
-void ScaleFactors(const Vector& ofVertices, CellState& cells);
+void ScaleFactors(const Values& ofVertices, CellState& cells);
 
 /// Put the detail of the cells beside a model of their data, whose state is cells.Start. Returns a
 /// model that does not diffuse as it is.

@@ -60,14 +60,12 @@ Values FirstDetail(const Fields& fields, const CellState& cells)
 
 } // namespace
 
-void ScaleFactors(const Vector& ofVertices, CellState& cells)
+void ScaleFactors(const Values& ofVertices, CellState& cells)
 {
-  for (Index c = 0; c < static_cast<Index>(cells.Factors.size()) && ofVertices.size() > 0; ++c)
+  if (ofVertices.size() > 0)
   {
-    if (cells.Transfer.Participates(c))
-    {
-      cells.Factors[c] *= cells.Transfer.MeanOver(c, [&](Index i) { return ofVertices[i]; });
-    }
+    const Values ofCells = cells.Transfer.ToCells(ofVertices); // 0 where cells take no part
+    cells.Factors = (cells.Factors.col(0).asDiagonal() * ofCells).eval();
   }
 }
 

@@ -204,8 +204,8 @@ std::vector<Warning> DirectionFieldRun::FindOwnWarnings() const
   {
     Sentence text;
     text << this->WithoutDirection << triangles
-         << " have the same curvature in all directions, as far as the rounding of the coordinates "
-            "tells, and the field is 0 there; "
+         << " have the same curvature in all directions, up to what the rounding of the "
+            "coordinates may cause, and the field is 0 there; "
          << Word::Setting("Method") << " "
          << Word::Choice("Method", DirectionMethod::CurvatureAligned, "CurvatureAligned")
          << " continues it";

@@ -65,7 +65,7 @@ public:
   };
 
   /// The distances up to a cutoff, in coordinate units or time, from each of several points of the
-  /// input, one row each; empty: from all. Rows of points that are on no triangle are empty.
+  /// input, one row each; empty: from all. Rows of points that are on no triangle that fronts cross are empty.
   /// Settings and inputs are those of Update(), but for the sources.
   Matrix FindEach(const BlockInput& input, Settings& given, const std::vector<Index>& points,
     double cutoff, const ProgressMonitor& progress);
@@ -100,7 +100,8 @@ private:
   SourceSet FindPlaced(const SourceShapes& shapes) const;
   SourceSet FindProjected(const BlockInput& input, const SourceShapes& shapes,
     double maximumDistance, const ProgressMonitor& progress);
-  SourcePiece PieceOfVertex(Index vertex, Index number) const;
+  Index CornerOf(Index point) const;
+  static SourcePiece PieceAt(Index corner, Index number);
   /// That is taken. areTimes: there are speeds or start times. work: how often the whole surface is
   /// passed over.
   DistanceMethod FindMethod(DistanceMethod given, bool areTimes, double work) const;

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The matrix of distances of a DistanceRun.
+#include "Core/Foundation/LoopWatch.h"
 #include "Run/DistanceRun.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -29,14 +30,14 @@ DistanceRun::Matrix DistanceRun::FindEach(const BlockInput& input, Settings& giv
   const TriangleMesh& mesh = *this->MeshOfSolvers;
   const auto all = static_cast<Index>(surface.Points().rows());
   const Index count = points.empty() ? all : static_cast<Index>(points.size());
-  const auto vertexOf = [&](Index k)
-  { return surface.VertexOf(points.empty() ? k : points[static_cast<std::size_t>(k)]); };
+  const auto cornerOf = [&](Index k)
+  { return this->CornerOf(points.empty() ? k : points[static_cast<std::size_t>(k)]); };
   this->Found = {};
   this->Found.AreShapes = true;
   for (Index k = 0; k < count; ++k)
   {
     ++this->Found.Given;
-    ++(vertexOf(k) >= 0 ? this->Found.Count : this->Found.Outside);
+    ++(cornerOf(k) >= 0 ? this->Found.Count : this->Found.Outside);
   }
   this->Found.Outside = points.empty() ? 0 : this->Found.Outside;
   const double unit = mesh.LengthUnit();
@@ -68,6 +69,26 @@ DistanceRun::Matrix DistanceRun::FindEach(const BlockInput& input, Settings& giv
   std::vector<GeodesicDistance::Memory> memories(
     static_cast<std::size_t>(isExact ? 0 : std::min(panel, count)),
     GeodesicDistance::Memory(isExact ? 0 : eikonal->NumberOfVertices()));
+  ExactDistance::Memories windows;
+  // Threads beside the one that is watched stop with it.
+  std::atomic<bool> stopped{ false };
+  const ProgressMonitor::Callback goOn = [&stopped](double)
+  {
+    LoopWatch* const watch = LoopWatch::OfThisThread();
+    try
+    {
+      if (watch)
+      {
+        watch->Ask();
+      }
+    }
+    catch (const Aborted&)
+    {
+      stopped = true;
+    }
+    return !stopped;
+  };
+  const ProgressMonitor ofTasks(goOn);
   Matrix matrix;
   for (Index first = 0; first < count; first += panel)
   {
@@ -77,29 +98,15 @@ DistanceRun::Matrix DistanceRun::FindEach(const BlockInput& input, Settings& giv
       {
         auto& row = rows[static_cast<std::size_t>(k)];
         row.clear();
-        const Index vertex = vertexOf(first + k);
-        if (vertex < 0)
+        const Index corner = cornerOf(first + k);
+        if (corner < 0)
         {
           return;
         }
-        std::vector<std::pair<Index, double>> near;
-        if (isExact)
-        {
-          const auto found =
-            exact->Find({ this->PieceOfVertex(vertex, 0) }, reach, ProgressMonitor());
-          for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-          {
-            if (found.Times[static_cast<std::size_t>(i)] <=
-              std::min(reach, std::numeric_limits<double>::max()))
-            {
-              near.emplace_back(i, found.Times[static_cast<std::size_t>(i)]);
-            }
-          }
-        }
-        else
-        {
-          near = eikonal->FindNear(vertex, reach, memories[static_cast<std::size_t>(k)]);
-        }
+        const auto near = isExact
+          ? exact->FindNear(this->PieceAt(corner, 0), reach, windows, ofTasks)
+          : eikonal->FindNear(mesh.TriangleVertices().data()[corner], reach,
+              memories[static_cast<std::size_t>(k)], ofTasks);
         for (const auto& [i, time] : near)
         {
           row.emplace_back(mesh.InputVertex()[static_cast<std::size_t>(i)], time * unit);

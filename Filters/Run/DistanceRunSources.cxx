@@ -83,7 +83,7 @@ std::vector<double> MakeSlowness(const Surface& surface, const Fields& fields)
 void JoinNeighbours(
   const TriangleMesh& mesh, const std::vector<double>& names, std::vector<SourcePiece>& pieces)
 {
-  std::map<Index, Index> pieceAt; // vertices
+  std::multimap<Index, Index> pieceAt; // vertices
   for (std::size_t k = 0; k < pieces.size(); ++k)
   {
     const auto corner = std::find(pieces[k].From.begin(), pieces[k].From.end(), 1.0);
@@ -97,17 +97,25 @@ void JoinNeighbours(
   for (const auto& [vertex, k] : pieceAt)
   {
     const auto v = static_cast<std::size_t>(vertex);
+    const auto joinAt = [&, piece = k](Index other)
+    {
+      const auto [begin, end] = pieceAt.equal_range(other);
+      for (auto found = begin; found != end; ++found)
+      {
+        if (names[static_cast<std::size_t>(found->second)] ==
+          names[static_cast<std::size_t>(piece)])
+        {
+          sets.Join(piece, found->second);
+        }
+      }
+    };
+    joinAt(vertex);
     for (Index c = mesh.VertexCornersBegin()[v]; c < mesh.VertexCornersBegin()[v + 1]; ++c)
     {
       const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(c)];
       for (const int step : { 1, 2 })
       {
-        const auto other = pieceAt.find(mesh.OtherCorner(corner, step));
-        if (other != pieceAt.end() &&
-          names[static_cast<std::size_t>(other->second)] == names[static_cast<std::size_t>(k)])
-        {
-          sets.Join(k, other->second);
-        }
+        joinAt(mesh.OtherCorner(corner, step));
       }
     }
   }
@@ -133,12 +141,26 @@ FrontShapes DistanceRun::MakeShapes(const Fields& fields, const DistanceSettings
     settings.AlongSpeed, settings.AcrossSpeed);
 }
 
-/// A vertex as a source of this number.
-SourcePiece DistanceRun::PieceOfVertex(Index vertex, Index number) const
+/// A corner at a point of a triangle that fronts cross; -1: there is none.
+Index DistanceRun::CornerOf(Index point) const
 {
   const TriangleMesh& mesh = *this->MeshOfSolvers;
-  const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(
-    mesh.VertexCornersBegin()[static_cast<std::size_t>(vertex)])];
+  const Index vertex = this->Domain->VertexOf(point);
+  for (Index c = vertex < 0 ? 0 : mesh.VertexCornersBegin()[vertex];
+       vertex >= 0 && c < mesh.VertexCornersBegin()[vertex + 1]; ++c)
+  {
+    const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(c)];
+    if (!IsBarrier(this->Shapes, corner / 3))
+    {
+      return corner;
+    }
+  }
+  return -1;
+}
+
+/// A corner of a triangle as a source of this number.
+SourcePiece DistanceRun::PieceAt(Index corner, Index number)
+{
   std::array<double, 3> place = { 0.0, 0.0, 0.0 };
   place[static_cast<std::size_t>(corner % 3)] = 1.0;
   return { corner / 3, place, place, number, number, number };
@@ -170,14 +192,13 @@ DistanceRun::SourceSet DistanceRun::FindMarked(const Fields& fields) const
       continue;
     }
     ++set.Given;
-    if (surface.VertexOf(static_cast<Index>(i)) < 0)
+    const Index corner = this->CornerOf(static_cast<Index>(i));
+    ++(corner < 0 ? set.Outside : set.Count);
+    if (corner < 0)
     {
-      ++set.Outside;
       continue;
     }
-    ++set.Count;
-    set.Pieces.push_back(
-      this->PieceOfVertex(surface.VertexOf(static_cast<Index>(i)), static_cast<Index>(i)));
+    set.Pieces.push_back(this->PieceAt(corner, static_cast<Index>(i)));
     set.Names.push_back(mark);
     if (!starts.empty())
     {
@@ -217,7 +238,7 @@ DistanceRun::SourceSet DistanceRun::FindPlaced(const SourceShapes& shapes) const
     const auto row = static_cast<std::size_t>(k);
     const bool isPoint = !shapes.OfPoints.empty();
     const Index at =
-      isPoint ? surface.VertexOf(shapes.OfPoints[row]) : meshTriangles.at(shapes.OfTriangles[row]);
+      isPoint ? this->CornerOf(shapes.OfPoints[row]) : meshTriangles.at(shapes.OfTriangles[row]);
     ++(at < 0 ? set.Outside : set.Count);
     if (at < 0)
     {
@@ -229,7 +250,7 @@ DistanceRun::SourceSet DistanceRun::FindPlaced(const SourceShapes& shapes) const
       piece.From[static_cast<std::size_t>(a)] = shapes.Places(k, a);
     }
     piece.To = piece.From;
-    set.Pieces.push_back(isPoint ? this->PieceOfVertex(at, k) : piece);
+    set.Pieces.push_back(isPoint ? this->PieceAt(at, k) : piece);
     set.Names.push_back(k);
     if (!shapes.StartTimes.empty())
     {

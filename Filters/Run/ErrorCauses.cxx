@@ -7,6 +7,7 @@
 #include "Core/Solvers/NotPositiveDefinite.h"
 #include "Core/Solvers/SolverChoice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -101,7 +102,13 @@ Sentence NameExtremes(Settings& settings, const Sentence& message)
   ExtremesFinder finder;
   settings.Visit(finder);
   Sentence& text = finder.Found;
-  if (text.Words().empty())
+  const auto isNamed = [&](const Word& word)
+  {
+    return word.Type == Word::Kind::Setting &&
+      std::any_of(message.Words().begin(), message.Words().end(),
+        [&](const Word& other) { return other.Type == word.Type && other.Name == word.Name; });
+  };
+  if (text.Words().empty() || std::any_of(text.Words().begin(), text.Words().end(), isNamed))
   {
     return message;
   }

@@ -372,10 +372,7 @@ FidelityWeights FindFidelity(const ModelInputs& inputs, const FidelityTask& give
       weights.Factors.rightCols(1) = factors;
     }
   }
-  if (weights.Factors.rows() > 0)
-  {
-    result.FidelityFactors = weights.Factors.col(0);
-  }
+  result.FidelityFactors = weights.Factors;
   notes.AppendTo(result);
   return weights;
 }

@@ -40,7 +40,8 @@ std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields
   return seeds;
 }
 
-/// The area of the surface that each row of the data stands for; 0 of rows that take no part.
+/// The area of the surface that each row of the data stands for; 0 of rows that take no part, and
+/// where another process owns the vertex. Collective.
 std::vector<double> FindAreas(const Surface& surface, const Fields& fields)
 {
   const TriangleMesh& mesh = surface.InputMesh();
@@ -55,10 +56,13 @@ std::vector<double> FindAreas(const Surface& surface, const Fields& fields)
     }
     return areas;
   }
+  const Reduction& reduction = mesh.GetReduction();
+  Vector storage;
+  const Vector& ofVertices = reduction.Accumulated(mesh.ControlAreas(), storage);
   for (std::size_t i = 0; i < areas.size(); ++i)
   {
     const Index v = surface.VertexOf(static_cast<Index>(i));
-    areas[i] = v >= 0 ? mesh.ControlAreas()[v] : 0.0;
+    areas[i] = v >= 0 && reduction.Owns(v) ? ofVertices[v] : 0.0;
   }
   return areas;
 }
@@ -148,44 +152,53 @@ void ValueStatistics::Widen(
   bounds[component].Widen(other);
 }
 
-void ValueStatistics::Add(const Surface& surface, const Fields& fields, bool inpaint)
+void ValueStatistics::Add(
+  const Surface& surface, const Fields& fields, bool inpaint, const Reduction& processes)
 {
   const Values& values = fields.Data.Values;
   const std::vector<char> participates = FindParticipatingRows(surface, fields);
   const bool fixedHere = fields.Fixed.OnCells == fields.Data.OnCells;
   std::vector<Index> known;
+  double largest[2] = { this->Largest, static_cast<double>(values.cols()) };
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
     if (!IsSet(participates, i) || IsSet(fields.Missing, i) || !values.row(i).allFinite())
     {
       continue;
     }
-    this->Largest = std::max(this->Largest, values.row(i).cwiseAbs().maxCoeff());
+    largest[0] = std::max(largest[0], values.row(i).cwiseAbs().maxCoeff());
     if (!fields.IsLeftOut(i, inpaint) || (fixedHere && IsSet(fields.Fixed.Values, i)))
     {
       known.push_back(static_cast<Index>(i));
     }
   }
+  processes.Max(largest, 2); // a process without data has no components
+  this->Largest = largest[0];
   const std::vector<double> areas = FindAreas(surface, fields);
   std::vector<double> ofKnown;
   for (const Index i : known)
   {
-    ofKnown.push_back(areas[static_cast<std::size_t>(i)]);
+    if (areas[static_cast<std::size_t>(i)] > 0.0)
+    {
+      ofKnown.push_back(areas[static_cast<std::size_t>(i)]);
+    }
   }
-  constexpr double largest = 30.0; // in medians: a spike is not the surface that the others are not
-  const double bound = largest * Median(ofKnown);
+  constexpr double most = 30.0; // in medians: a spike is not the surface that the others are not
+  const double bound = most * Median(ofKnown, processes);
   std::vector<AreaOfValue> column;
-  for (Eigen::Index k = 0; k < values.cols(); ++k)
+  for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(largest[1]); ++k)
   {
     ValueBounds bounds;
     column.clear();
     for (const Index i : known)
     {
-      bounds.Widen({ values(i, k), values(i, k) });
-      column.push_back({ values(i, k), std::min(areas[static_cast<std::size_t>(i)], bound) });
+      const double value = k < values.cols() ? values(i, k) : 0.0;
+      bounds.Widen({ value, value });
+      column.push_back({ value, std::min(areas[static_cast<std::size_t>(i)], bound) });
     }
+    bounds = OfAllProcesses(bounds, processes);
     Widen(this->All, static_cast<std::size_t>(k), bounds);
-    Widen(this->Robust, static_cast<std::size_t>(k), BoundsOfMost(column));
+    Widen(this->Robust, static_cast<std::size_t>(k), BoundsOfMost(column, bounds, processes));
   }
 }
 
@@ -196,34 +209,6 @@ void ValueStatistics::Merge(const ValueStatistics& other)
   {
     Widen(this->All, k, other.All[k]);
     Widen(this->Robust, k, other.Robust[k]);
-  }
-}
-
-void ValueStatistics::Merge(const Reduction& processes)
-{
-  if (processes.IsSerial())
-  {
-    return;
-  }
-  // Magnitude and components of each process, and four bounds of each component. A process without
-  // data has no components.
-  std::vector<double> mine = { this->Largest, static_cast<double>(this->All.size()) };
-  for (std::size_t k = 0; k < this->All.size(); ++k)
-  {
-    mine.insert(mine.end(),
-      { this->All[k].Low, this->All[k].High, this->Robust[k].Low, this->Robust[k].High });
-  }
-  const std::vector<double> all = processes.Gather(mine);
-  for (std::size_t i = 0; i < all.size();)
-  {
-    this->Largest = std::max(this->Largest, all[i]);
-    const auto components = static_cast<std::size_t>(all[i + 1]);
-    i += 2;
-    for (std::size_t k = 0; k < components; ++k, i += 4)
-    {
-      Widen(this->All, k, { all[i], all[i + 1] });
-      Widen(this->Robust, k, { all[i + 2], all[i + 3] });
-    }
   }
 }
 

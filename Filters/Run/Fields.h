@@ -84,22 +84,22 @@ struct Fields
   }
 };
 
-/// The extreme known values of each component, over several surfaces and processes.
+/// The extreme known values of each component, over several surfaces.
 class ValueStatistics
 {
 public:
   /// Count the finite values at points or cells of participating triangles; those that are missing
-  /// count for Magnitude() alone. inpaint: whether a mask means missing.
-  void Add(const Surface& surface, const Fields& fields, bool inpaint);
+  /// count for Magnitude() alone. inpaint: whether a mask means missing. Over the processes that
+  /// have the surface together.
+  void Add(const Surface& surface, const Fields& fields, bool inpaint, const Reduction& processes);
   void Merge(const ValueStatistics& other);
-  void Merge(const Reduction& processes);
 
   /// R: the largest over the components of max - min, or of RobustRange() where that is at most a
   /// tenth; 1 if no value differs.
   double Range() const;
   /// The largest over the components of max - min; 0 if no value differs.
   double WholeRange() const;
-  /// The same of BoundsOfMost() of each surface in each process.
+  /// The same of BoundsOfMost() of each surface.
   double RobustRange() const;
   /// The largest magnitude.
   double Magnitude() const { return this->Largest; }

@@ -98,7 +98,8 @@ void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
     " places have different values: their weighted means count", result);
   if (found.PartsWithTooFewValues > 0)
   {
-    Sentence text("fewer than 3 places");
+    Sentence text("fewer than ");
+    text << found.EnoughPlaces << " places";
     if (found.Parts > 1)
     {
       text << " of " << found.PartsWithTooFewValues
@@ -118,7 +119,9 @@ void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
   {
     result.WarnOnce(Sentence("the values leave slopes open with ")
       << Word::Setting("Boundary") << " " << Word::Choice("Boundary", RimCondition::Free, "Free")
-      << ": the flattest result is taken");
+      << ": the flattest result is taken"
+      << (found.HasInfiniteError ? ", and standard errors are infinite where slopes are open"
+                                 : ""));
   }
   if (found.DropsNegativeCurvature)
   {
@@ -174,14 +177,18 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
                    "measured. A band of 1.645 standard errors on each side holds 90 %: of few "
                    "values they are longer, by Student's distribution and since the smoothing is "
                    "not sure. With CorrelationLength they contain that of the mean. They are NaN "
-                   "where NoiseLevel is 0 and the values leave nothing to estimate it from. On "
-                   "cells they are the means of the corners, upper bounds." },
+                   "where NoiseLevel is 0 and the values leave nothing to estimate it from, and "
+                   "infinite where they leave the slope open. On cells they are the means of the "
+                   "corners, upper bounds." },
     this->ComputeError);
   visitor.Choice({ "Boundary", "",
-                   "The condition at the boundary of the surface. Natural: the result becomes "
-                   "flat towards it. Free: the result continues its slope, and linear functions "
-                   "on flat pieces come back exactly from a few values." },
-    this->Boundary, { "Natural", "Free" });
+                   "The condition at the boundary of the surface. Automatic: Free, but Natural "
+                   "with diffusivities other than 1 or IntrinsicDelaunay and on closed connected "
+                   "parts. Natural: the result becomes flat towards the boundary. Free: it "
+                   "continues its slope, and linear functions on flat pieces come back exactly "
+                   "from a few values: of a planar wave of 0.6 m/s the speed near the boundary is "
+                   "0.60 m/s, and 0.8 to 1.1 m/s with Natural." },
+    this->Boundary, { "Natural", "Free", "Automatic" });
   visitor.Number({ "MaximumDistance", "coordinates",
                    "The largest distance of points with values from the surface, in the unit of "
                    "the coordinates, 0 or more. Farther ones are counted and left out. 0: any." },
@@ -201,7 +208,7 @@ void InterpolationSettings::CheckTogether(const FieldSummary* fields, Problems& 
   this->RunSettings::CheckTogether(fields, problems);
   RequireData(fields, problems);
   const bool isFree = this->Boundary == RimCondition::Free;
-  if (isFree && (this->AlongDiffusivity != 1.0 || this->AcrossDiffusivity != 1.0))
+  if (isFree && this->HasDiffusivities())
   {
     problems.push_back(Sentence(Word::Setting("Boundary"))
       << " is " << Word::Choice("Boundary", RimCondition::Free, "Free") << " but "
@@ -245,7 +252,9 @@ SmoothInterpolation::Settings InterpolationSettings::MakeCoreSettings(const Unit
   using Choice = SmoothInterpolation::Choice;
   SmoothInterpolation::Settings settings;
   settings.Kappa = this->CorrelationLength > 0.0 ? units.LengthUnit / this->CorrelationLength : 0.0;
-  settings.Rim = this->Boundary;
+  const bool excludesFree = this->HasDiffusivities() || this->IntrinsicDelaunay;
+  settings.Rim = this->Boundary == RimCondition::Automatic && excludesFree ? RimCondition::Natural
+                                                                           : this->Boundary;
   settings.Smoothing = this->Exact ? Choice::Exact
     : !this->AutomaticSmoothing    ? Choice::Given
     : this->NoiseLevel > 0.0       ? Choice::NoiseLevel
@@ -329,6 +338,7 @@ std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResu
   {
     Output error{ "Error", Place::PerVertex, OutputType::Real, unit * found.Error };
     error.IsBesideResult = true;
+    error.MayBeInfinite = true;
     error.Elsewhere = none;
     error.DataName = model.NameOfSamples;
     outputs.push_back(std::move(error));

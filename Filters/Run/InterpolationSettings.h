@@ -18,7 +18,7 @@ struct InterpolationSettings : RunSettings
   double Smoothing = 1.0;
   bool KeepRange = false;
   bool ComputeError = false;
-  RimCondition Boundary = RimCondition::Natural;
+  RimCondition Boundary = RimCondition::Automatic;
   double MaximumDistance = 0.0;
   double AlongDiffusivity = 1.0;
   double AcrossDiffusivity = 1.0;
@@ -30,6 +30,10 @@ struct InterpolationSettings : RunSettings
   std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
   bool IsDirected() const { return this->AlongDiffusivity != this->AcrossDiffusivity; }
+  bool HasDiffusivities() const
+  {
+    return this->AlongDiffusivity != 1.0 || this->AcrossDiffusivity != 1.0;
+  }
 
 protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;

@@ -59,9 +59,10 @@ struct RunResult
   std::vector<Output> Numbers; ///< that the model depends on, the same at every step
   double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
   double MissedByFinish = 0.0; ///< of the solves of Finish(), likewise
-  /// Of the weights of AutomaticFidelity in the connected components, per vertex, by which the
-  /// fidelity factors of the data are multiplied; no entry if there is one component.
-  Vector FidelityFactors;
+  /// Of the weights of AutomaticFidelity in the connected components, per vertex and column, or of
+  /// all columns in one, by which the fidelity factors of the data are multiplied; no entry if there
+  /// is one component.
+  Values FidelityFactors;
   bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<Sentence> Warnings;
 

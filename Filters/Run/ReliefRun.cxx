@@ -16,53 +16,8 @@ namespace
 /// The part of the points with relief that edges make lower without a warning.
 constexpr double ExpectedToBeLow = 0.05;
 
-} // namespace
-
-void ReliefSettings::Visit(SettingVisitor& visitor)
-{
-  visitor.Number({ "Height", "coordinates",
-                   "The height of the value 1 above that of 0, in the unit of the coordinates. "
-                   "Below 0 it is carved." },
-    this->Height, SettingRange::AnyFinite());
-  visitor.Number(
-    { "Base", "coordinates", "The height of the value 0, in the unit of the coordinates." },
-    this->Base, SettingRange::AnyFinite());
-  visitor.Choice({ "Levels", "",
-                   "Smooth: the height is Base + Height times the value. Two: it is Base where "
-                   "the value is below Threshold, and Base + Height above." },
-    this->Levels, { "Smooth", "Two" }, {});
-  visitor.Number({ "Threshold", "",
-                   "The value in the middle between two levels, in the unit of the array. Used by "
-                   "Levels Two." },
-    this->Threshold, SettingRange::AnyFinite());
-  visitor.Number({ "Flank", "coordinates",
-                   "The width of the slope between two levels along the surface, in the unit of "
-                   "the coordinates. 0: a step. Used by Levels Two." },
-    this->Flank, SettingRange::NonNegative());
-  SettingRange angles = SettingRange::Between(0.0, 90.0, "0 to 90 degrees, or -1: off");
-  angles.HasSpecial = true;
-  angles.Special = -1.0;
-  visitor.Number({ "Overhang", "degrees",
-                   "Faces that face down more steeply than this angle, in degrees between the "
-                   "normal and the horizontal, have no relief. 0: no face that faces down. -1: "
-                   "all faces may have relief." },
-    this->Overhang, angles);
-  visitor.Numbers({ "UpDirection", "", "The direction of printing, for Overhang." },
-    this->UpDirection, SettingRange::AnyFinite());
-  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
-}
-
-void ReliefSettings::Check(const FieldSummary*, Problems& problems)
-{
-  CheckRanges(*this, problems);
-  if (std::all_of(this->UpDirection.begin(), this->UpDirection.end(),
-        [](double component) { return component == 0.0; }))
-  {
-    problems.push_back(
-      Sentence(Word::Setting("UpDirection")) << " is 0; allowed: three numbers that are not all 0");
-  }
-}
-
+/// What the user should know, each in a sentence of its own. wanted: the heights before any was
+/// lowered.
 std::vector<Sentence> DescribeRelief(const Relief& relief, const Vector& wanted)
 {
   std::vector<Sentence> sentences;
@@ -113,6 +68,65 @@ std::vector<Sentence> DescribeRelief(const Relief& relief, const Vector& wanted)
     sentences.push_back(text);
   }
   return sentences;
+}
+
+} // namespace
+
+void ReliefSettings::Visit(SettingVisitor& visitor)
+{
+  visitor.Number({ "Height", "coordinates",
+                   "The height of the value 1 above that of 0, in the unit of the coordinates. "
+                   "Below 0 it is carved." },
+    this->Height, SettingRange::AnyFinite());
+  visitor.Number(
+    { "Base", "coordinates", "The height of the value 0, in the unit of the coordinates." },
+    this->Base, SettingRange::AnyFinite());
+  visitor.Choice({ "Levels", "",
+                   "Smooth: the height is Base + Height times the value. Two: it is Base where "
+                   "the value is below Threshold, and Base + Height above." },
+    this->Levels, { "Smooth", "Two" }, {});
+  visitor.Number({ "Threshold", "",
+                   "The value in the middle between two levels, in the unit of the array. Used by "
+                   "Levels Two." },
+    this->Threshold, SettingRange::AnyFinite());
+  visitor.Number({ "Flank", "coordinates",
+                   "The width of the slope between two levels along the surface, in the unit of "
+                   "the coordinates. 0: a step. Used by Levels Two." },
+    this->Flank, SettingRange::NonNegative());
+  SettingRange angles = SettingRange::Between(0.0, 90.0, "0 to 90 degrees, or -1: off");
+  angles.HasSpecial = true;
+  angles.Special = -1.0;
+  visitor.Number({ "Overhang", "degrees",
+                   "Faces that face down more steeply than this angle, in degrees between the "
+                   "normal and the horizontal, have no relief. 0: no face that faces down. -1: "
+                   "all faces may have relief." },
+    this->Overhang, angles);
+  visitor.Numbers({ "UpDirection", "", "The direction of printing, for Overhang." },
+    this->UpDirection, SettingRange::AnyFinite());
+  VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
+}
+
+void ReliefSettings::Check(const FieldSummary* fields, Problems& problems)
+{
+  CheckRanges(*this, problems);
+  if (fields && fields->DataComponents > 1)
+  {
+    problems.push_back(
+      Sentence(fields->DataName) << " has " << fields->DataComponents << " components; allowed: 1");
+  }
+  if (this->UpDirection.size() != 3)
+  {
+    problems.push_back(Sentence(Word::Setting("UpDirection"))
+      << " has " << static_cast<Index>(this->UpDirection.size())
+      << " components; allowed: three numbers that are not all 0");
+    return;
+  }
+  if (std::all_of(this->UpDirection.begin(), this->UpDirection.end(),
+        [](double component) { return component == 0.0; }))
+  {
+    problems.push_back(
+      Sentence(Word::Setting("UpDirection")) << " is 0; allowed: three numbers that are not all 0");
+  }
 }
 
 void ReliefRun::Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress)

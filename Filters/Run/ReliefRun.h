@@ -28,10 +28,6 @@ struct ReliefSettings : Settings
   void Check(const FieldSummary* fields, Problems& problems) override;
 };
 
-/// What the user should know of a relief, each in a sentence of its own.
-/// wanted: the heights before any was lowered.
-std::vector<Sentence> DescribeRelief(const Relief& relief, const Vector& wanted);
-
 /// The relief of one surface, kept as long as neither inputs nor settings change.
 class ReliefRun : public SurfaceRun
 {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
-#include "Core/Surface/EdgeLengths.h"
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
 #include "Run/FarPoints.h"
@@ -120,7 +119,7 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   this->LeaveOutUndetermined(input, *fields, processes, block, progress);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
   block.Statistics = ValueStatistics();
-  block.Statistics.Add(*block.Surface, *fields, inpaint);
+  block.Statistics.Add(*block.Surface, *fields, inpaint, processes);
   block.HasData = processes.Any(fields->Data.Values.cols() > 0);
   block.HasMask = !mask.empty();
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
@@ -160,23 +159,19 @@ void Run::MeasureUnits(const Reduction& processes)
   for (const auto& block : this->Blocks)
   {
     const TriangleMesh& mesh = block->Surface->Mesh();
-    EdgeLengths ofBlock;
-    if (block->Decomposition)
+    if (processes.Any(!block->Edges))
     {
-      ofBlock = MeasureEdgeLengths(block->Surface->InputMesh(), processes);
+      block->Edges = block->Decomposition
+        ? MeasureEdgeLengths(block->Surface->InputMesh(), processes)
+        : EdgeLengths{ mesh.TotalEdgeLength(), static_cast<double>(mesh.NumberOfEdges()),
+            CountLongEdges(block->Surface->InputMesh(), this->Parallel) };
     }
-    else
-    {
-      ofBlock = { mesh.TotalEdgeLength(), static_cast<double>(mesh.NumberOfEdges()),
-        CountLongEdges(block->Surface->InputMesh(), this->Parallel) };
-    }
-    edges += ofBlock.Number;
-    length += ofBlock.Sum * mesh.LengthUnit();
+    edges += block->Edges->Number;
+    length += block->Edges->Sum * mesh.LengthUnit();
     drawn.push_back(&block->Surface->InputMesh());
-    this->LongEdges += ofBlock.LeftOut;
+    this->LongEdges += block->Edges->LeftOut;
     statistics.Merge(block->Statistics);
   }
-  statistics.Merge(processes);
 
   const ModelTraits traits = this->Settings->DescribeModel();
   UnitSystem units;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Models/Trajectory.h"
+#include "Core/Surface/EdgeLengths.h"
 #include "Run/CellFields.h"
 #include "Run/Fields.h"
 #include "Run/Fingerprint.h"
@@ -14,6 +15,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -106,6 +108,7 @@ public:
     std::size_t NumberOfBlocks = 0;
     double TimeStep = 0.0;
     int NumberOfSteps = 0; ///< of a model that depends on it
+    std::optional<EdgeLengths> Edges; ///< of Surface, once they are measured
     ValueStatistics Statistics;
     SurfaceDiffusion::Undetermined Undetermined;
     bool HasData = false;

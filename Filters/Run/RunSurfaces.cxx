@@ -97,6 +97,7 @@ void Run::LeaveOutUndetermined(const BlockInput& input, const Fields& fields,
   }
   std::unique_ptr<Surface>& former = block.WholeSurface ? block.WholeSurface : block.Surface;
   std::unique_ptr<Surface> whole = std::move(former);
+  block.Edges.reset();
   block.Surface.reset(); // if the work below ends early, all is made again
   block.WholeSurface.reset();
   block.Solvers = SolverStore();

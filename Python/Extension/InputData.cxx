@@ -3,6 +3,7 @@
 #include "InputData.h"
 
 #include "Core/Surface/Polygons.h"
+#include "Run/FieldChecks.h"
 #include "Threads.h"
 
 #include <algorithm>
@@ -288,7 +289,8 @@ Fields InputFields::Read() const
   fields.Mask = { ReadFlags(this->Mask.Values), this->Mask.OnCells };
   fields.Fixed = { ReadFlags(this->Fixed.Values), this->Fixed.OnCells };
   fields.FidelityFactors.OnCells = this->FidelityFactors.OnCells;
-  fields.Seeds.OnCells = this->Seeds.OnCells;
+  fields.Seeds =
+    AsLabels({ ReadNumbers(this->Seeds.Values), this->Seeds.OnCells }, Word::Array("SeedArray"));
   if (fields.HasCells())
   {
     fields.NumberOfCells = static_cast<Index>(this->Surface->NumberOfFaces());
@@ -300,21 +302,22 @@ Fields InputFields::Read() const
   }
   if (const auto& given = this->Directions.Values)
   {
-    fields.Directions.OnCells = this->Directions.OnCells;
-    fields.Directions.Values = this->Directions.OnCells
-      ? ReadOnTriangles<Points>(*this->Surface, *given)
-      : Points(
-          Eigen::Map<const Points>(given->data(), static_cast<Eigen::Index>(given->shape(0)), 3));
+    fields.Directions = { Eigen::Map<const Points>(
+                            given->data(), static_cast<Eigen::Index>(given->shape(0)), 3),
+      this->Directions.OnCells };
+    RequireFiniteDirections(
+      fields.Directions.Values, fields.Directions.OnCells, Word::Array("DirectionArray"));
+    if (this->Directions.OnCells)
+    {
+      fields.Directions.Values = ReadOnTriangles<Points>(*this->Surface, *given);
+    }
   }
   if (this->Rates)
   {
     fields.Rates = ReadOnTriangles<Values>(*this->Surface, *this->Rates);
+    RequireRates(fields.Rates, [&](Index t) { return this->Surface->FaceOf(t); });
   }
   fields.FidelityFactors.Values = ReadNumbers(this->FidelityFactors.Values);
-  if (const auto& given = this->Seeds.Values)
-  {
-    fields.Seeds.Values.assign(given->data(), given->data() + given->size());
-  }
   return fields;
 }
 

@@ -112,7 +112,7 @@ public:
   Located<std::optional<DoubleArray>> Directions; ///< points or faces x 3
   std::optional<DoubleArray> Rates; ///< faces x 4
   Located<std::optional<FactorArray>> FidelityFactors;
-  Located<std::optional<LongArray>> Seeds; ///< labels, 0 = free
+  Located<std::optional<FactorArray>> Seeds; ///< labels, 0 = free
   bool DataAreTerms = false; ///< Data are the data terms of a segmentation
 
   std::string Name; ///< of the data, for messages; may be empty

@@ -6,6 +6,7 @@
 
 #include "InputData.h"
 #include "ModelRun.h"
+#include "NewArrays.h"
 #include "PieceFunctions.h"
 #include "PythonRuns.h"
 #include "Run/RunSettings.h"
@@ -23,6 +24,9 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace nb = nanobind;
 using namespace SurfaceDiffusion;
@@ -34,7 +38,7 @@ namespace
 InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optional<InputArray> data,
   int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
   std::optional<DoubleArray> directions, std::optional<DoubleArray> rates,
-  std::optional<FactorArray> fidelity, std::optional<LongArray> seeds, bool dataAreTerms,
+  std::optional<FactorArray> fidelity, std::optional<FactorArray> seeds, bool dataAreTerms,
   const std::vector<std::string>& onFaces)
 {
   const auto isOnFaces = [&](const char* name)
@@ -67,6 +71,17 @@ nb::object GetTriangles(const std::shared_ptr<InputSurface>& surface)
   const Triangles& triangles = surface->GetTriangles();
   return nb::cast(nb::ndarray<nb::numpy, const Index, nb::shape<-1, 3>>(
     triangles.data(), { static_cast<std::size_t>(triangles.rows()), 3 }, nb::cast(surface)));
+}
+
+/// The face of each triangle.
+nb::object GetFaces(const InputSurface& surface)
+{
+  std::vector<std::int64_t> faces;
+  for (Index t = 0; t < static_cast<Index>(surface.GetTriangles().rows()); ++t)
+  {
+    faces.push_back(surface.FaceOf(t));
+  }
+  return NewArray(std::move(faces));
 }
 
 /// InputError becomes an exception of Python with the words of its message.
@@ -132,7 +147,8 @@ NB_MODULE(_core, m)
            const std::optional<FlagArray>&>(),
       "points"_a, "triangles"_a, "faces"_a, "number_of_faces"_a, "hidden"_a.none())
     .def("set_area_factors", &InputSurface::SetAreaFactors, "factors"_a)
-    .def("triangles", &GetTriangles);
+    .def("triangles", &GetTriangles)
+    .def("faces", &GetFaces);
 
   nb::class_<InputFields>(m, "Fields")
     .def(
@@ -140,7 +156,7 @@ NB_MODULE(_core, m)
       [](InputFields* self, std::shared_ptr<InputSurface> surface, std::optional<InputArray> data,
         int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
         std::optional<DoubleArray> directions, std::optional<DoubleArray> rates,
-        std::optional<FactorArray> fidelity, std::optional<LongArray> seeds, bool dataAreTerms,
+        std::optional<FactorArray> fidelity, std::optional<FactorArray> seeds, bool dataAreTerms,
         const std::vector<std::string>& onFaces)
       {
         new (self) InputFields(MakeFields(std::move(surface), std::move(data), components,
@@ -214,9 +230,10 @@ NB_MODULE(_core, m)
     .def("seams", &SeamsOf<SurfaceOperators>);
 
   nb::class_<SurfaceFields>(m, "SurfaceFields")
-    .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool,
-           const nb::object&>(),
-      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "progress"_a.none())
+    .def(nb::init<std::shared_ptr<const InputSurface>, const std::optional<FlagArray>&, bool, bool,
+           double, const nb::object&>(),
+      "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "merges"_a, "tolerance"_a,
+      "progress"_a.none())
     .def(
       "prepare", &SurfaceFields::Prepare, "width"_a, "nu"_a, "unit_variance"_a, "progress"_a.none())
     .def("draw", &SurfaceFields::Draw, "seed"_a, "first"_a, "fields"_a, "progress"_a.none())
@@ -239,7 +256,7 @@ NB_MODULE(_core, m)
     .def("write", &PythonRuns::Write, "surface"_a, "number"_a, "output"_a, "source"_a)
     .def("find_each", &PythonRuns::FindEach, "surface"_a, "settings"_a, "points"_a.none(),
       "cutoff"_a, "progress"_a.none())
-    .def("turned_faces", &PythonRuns::TurnedFaces, "surface"_a, "source"_a);
+    .def("turned_triangles", &PythonRuns::TurnedTriangles, "surface"_a);
   BindShapeFunctions(m);
   BindPieceFunctions(m);
 }

@@ -17,7 +17,6 @@
 #include "SettingsTable.h"
 #include "Threads.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <stdexcept>
 #include <utility>
@@ -217,10 +216,9 @@ void PythonRuns::Write(std::size_t surface, std::size_t number, const OutputArra
   WithValueErrors([&] { WriteOutput(run.Outputs().at(number), source, input, output, -1); });
 }
 
-std::vector<std::int64_t> PythonRuns::TurnedFaces(
-  std::size_t surface, const InputSurface& source) const
+nb::object PythonRuns::TurnedTriangles(std::size_t surface) const
 {
-  std::vector<std::int64_t> faces;
+  std::vector<std::int64_t> rows;
   if (const auto* const relief = dynamic_cast<const ReliefRun*>(&this->RunOf(surface)))
   {
     const std::vector<char>& turned = relief->TurnedTriangles();
@@ -228,13 +226,11 @@ std::vector<std::int64_t> PythonRuns::TurnedFaces(
     {
       if (turned[t])
       {
-        faces.push_back(source.FaceOf(relief->GetSurface().InputTriangle(static_cast<Index>(t))));
+        rows.push_back(relief->GetSurface().InputTriangle(static_cast<Index>(t)));
       }
     }
   }
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  return faces;
+  return NewArray(std::move(rows));
 }
 
 } // namespace SurfaceDiffusion

@@ -47,8 +47,8 @@ public:
   /// DistanceRun::FindEach().
   nanobind::tuple FindEach(const InputFields& surface, const nanobind::dict& settings,
     const std::optional<LongArray>& points, double cutoff, const nanobind::object& progress);
-  /// Of relief: the faces of a surface with a triangle that the relief has turned, ascending.
-  std::vector<std::int64_t> TurnedFaces(std::size_t surface, const InputSurface& source) const;
+  /// Of relief: the rows of the triangles of a surface that the relief has turned.
+  nanobind::object TurnedTriangles(std::size_t surface) const;
 
 private:
   /// The settings, checked together with the inputs. Throws InputError and nanobind::value_error.

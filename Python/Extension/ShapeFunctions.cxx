@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ShapeFunctions.h"
 
-#include "Core/Geometry/Relief.h"
+#include "Core/Surface/EdgeLengths.h"
 #include "Core/Surface/EdgeRefinement.h"
 #include "InputData.h"
 #include "PythonProgress.h"
-#include "Run/ReliefRun.h"
-#include "Threads.h"
+#include "Run/TextureRates.h"
+#include "Run/TextureSettings.h"
 
 #include <nanobind/ndarray.h>
 
@@ -65,70 +65,27 @@ nb::dict Refine(
   return result;
 }
 
-Vector ToVector(const FactorArray& numbers)
-{
-  return Eigen::Map<const Vector>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
-}
-
-nb::object FindHeights(const InputSurface& surface, const FactorArray& values, double height,
-  double base, bool twoLevels, double threshold, double flank)
-{
-  const SurfaceArrays arrays = surface.Read({});
-  return ToNumpy(ReliefHeights(arrays.Points, arrays.Triangles, ToVector(values),
-    { height, base, twoLevels, threshold, flank }));
-}
-
-nb::object FindOverhangsOf(
-  const InputSurface& surface, double x, double y, double z, double degrees)
-{
-  const SurfaceArrays arrays = surface.Read({});
-  const std::vector<char> found =
-    FindOverhangs(arrays.Points, arrays.Triangles, { x, y, z }, degrees);
-  const std::vector<Index> flags(found.begin(), found.end());
-  return ToNumpy(flags.data(), flags.size(), 1);
-}
-
-nb::dict MakeReliefOf(
-  const InputSurface& surface, const FactorArray& heights, const nb::object& progress)
-{
-  Relief relief;
-  const Vector wanted = ToVector(heights);
-  PythonProgress(progress).Run(
-    [&](const ProgressMonitor& monitor)
-    {
-      const SurfaceArrays arrays = surface.Read({});
-      relief =
-        MakeRelief(arrays.Points, arrays.Triangles, wanted, PythonThreads::Instance(), monitor);
-    });
-  nb::dict result;
-  result["points"] = ToNumpy(relief.Places);
-  result["triangles"] = ToNumpy(relief.Faces);
-  result["heights"] = ToNumpy(relief.Heights);
-  result["lowered_points"] = relief.LoweredVertices;
-  result["open_edges"] = relief.OpenEdges;
-  result["non_manifold_edges"] = relief.NonManifoldEdges;
-  result["crossing_triangles_before"] = relief.CrossingTrianglesBefore;
-  result["crossing_triangles"] = relief.CrossingTriangles;
-  result["volume_change"] = relief.VolumeChange;
-  result["smallest_wall"] = relief.SmallestWall;
-  nb::list warnings;
-  for (const Sentence& sentence : DescribeRelief(relief, wanted))
-  {
-    warnings.append(nb::str(sentence.Text().c_str()));
-  }
-  result["warnings"] = warnings;
-  return result;
-}
-
 } // namespace
 
 void BindShapeFunctions(nb::module_& m)
 {
+  m.attr("edges_of_refinement") = TextureRates::EdgesOfRefinement;
+  m.attr("edges_per_wavelength") = TextureRates::EdgesPerWavelength;
+  m.def("sum_edges",
+    [](const InputSurface& surface)
+    {
+      const EdgeLengths lengths =
+        MeasureEdgeLengths(surface.Read({}).Points, surface.GetTriangles());
+      return nb::make_tuple(lengths.Sum, lengths.Number);
+    });
+  m.def("edge_length_for_features",
+    [](double featureSize, double meanEdgeLength)
+    {
+      TextureSettings settings;
+      settings.FeatureSize = featureSize;
+      return settings.EdgeLengthForFeatures(meanEdgeLength);
+    });
   m.def("refine", &Refine, "surface"_a, "length"_a, "maximum_triangles"_a, "progress"_a.none());
-  m.def("relief_heights", &FindHeights, "surface"_a, "values"_a, "height"_a, "base"_a,
-    "two_levels"_a, "threshold"_a, "flank"_a);
-  m.def("relief_overhangs", &FindOverhangsOf, "surface"_a, "x"_a, "y"_a, "z"_a, "degrees"_a);
-  m.def("relief", &MakeReliefOf, "surface"_a, "heights"_a, "progress"_a.none());
 }
 
 } // namespace SurfaceDiffusion

@@ -7,7 +7,7 @@
 namespace SurfaceDiffusion
 {
 
-/// The functions of Python that make another surface: refine() and relief().
+/// The function of Python that bisects the edges of a surface: refine().
 void BindShapeFunctions(nanobind::module_& m);
 
 } // namespace SurfaceDiffusion

@@ -21,13 +21,17 @@ namespace SurfaceDiffusion
 {
 
 SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
-  const std::optional<FlagArray>& mask, bool maskOnFaces, const nb::object& progress)
+  const std::optional<FlagArray>& mask, bool maskOnFaces, bool merges, double tolerance,
+  const nb::object& progress)
 {
+  SurfaceOptions options;
+  options.MergeCoincidentPoints = merges;
+  options.MergeTolerance = tolerance;
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
       this->Built = std::make_unique<const Surface>(
-        surface->Read({ mask, maskOnFaces }), SurfaceOptions(), PythonThreads::Instance(), monitor);
+        surface->Read({ mask, maskOnFaces }), options, PythonThreads::Instance(), monitor);
     });
 }
 

@@ -23,7 +23,7 @@ class SurfaceFields
 {
 public:
   SurfaceFields(std::shared_ptr<const InputSurface> surface, const std::optional<FlagArray>& mask,
-    bool maskOnFaces, const nanobind::object& progress);
+    bool maskOnFaces, bool merges, double tolerance, const nanobind::object& progress);
 
   /// Take the covariance: Gaussian of the full width at half maximum `width` if nu is 0, and
   /// otherwise Matern's with nu and the range `width`. The last one is kept.

@@ -13,7 +13,7 @@ from . import _core
 from ._functions import _run_once, left_out
 from ._models import ARRAYS
 from ._operators import import_sparse
-from ._refinement import MAXIMUM_TRIANGLES, take_along
+from ._refinement import MAXIMUM_TRIANGLES, interpolate_points, take_along
 from ._run import Input, Progress, ProgressReporter, Runner, warn
 from ._settings import settings_of, shorten
 from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place
@@ -179,12 +179,23 @@ maximum_distance, merge_coincident_points, merge_tolerance, progress, refine_to,
     """
     given = as_surface(surface)
     marked, rows, places = _as_sources(given, sources)
-    surface, carried, _ = take_along(given, "distance", refine_to, maximum_number_of_triangles, {
+    times = _as_times(start, len(rows if places is None else places))
+    surface, carried, fine = take_along(given, "distance", refine_to, maximum_number_of_triangles, {
         "mask": mask, "roi": roi, "speed": speed, "directions": directions})
-    if surface is not given and rows is not None and places is not None:  # other triangles, the same planes
+    names = rows if marked else np.arange(len(rows if places is None else places))
+    if fine is not None and places is None:  # between two sources is one
+        of_points = np.zeros((2, given.n_points))
+        of_points[0, rows] = np.arange(1, len(rows) + 1)
+        of_points[1, rows] = 0.0 if times is None else times
+        marks = interpolate_points(of_points[0], fine.parents, "mark")[given.n_points:]
+        added = np.flatnonzero(marks)
+        names = np.append(names, names[marks[added].astype(int) - 1])
+        if times is not None:
+            times = np.append(times, fine.at_points(of_points[1])[given.n_points + added])
+        rows = np.append(rows, given.n_points + added)
+    elif fine is not None and rows is not None:  # other triangles, the same planes
         rows, places = None, np.einsum("ki,kij->kj", places, given.points[given.triangles[rows]])
     inputs = _make_input(surface, **carried)
-    times = _as_times(start, len(rows if places is None else places))
     inputs.core.set_sources(places, None, None, rows, times)
     runner = Runner("distance", {
         "method": method, "along_speed": along_speed, "across_speed": across_speed,
@@ -193,8 +204,7 @@ maximum_distance, merge_coincident_points, merge_tolerance, progress, refine_to,
     outputs, _ = _run_once("distance", inputs, runner, progress)
     found = {output.name: output.values for output in outputs}
     source = found["NearestSource"].astype(np.int64)
-    if marked:
-        source = np.where(source < 0, -1, rows[source])
+    source = np.where(source < 0, -1, names[source])
     name = "ArrivalTime" if "ArrivalTime" in found else "Distance"
     nearest = NearestSources(found[name], source)
     nearest._name = name

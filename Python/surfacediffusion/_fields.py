@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._functions import left_out
 from ._run import Progress, ProgressReporter, part_of, warn, warn_of_seams
-from ._settings import check_positive, shorten
+from ._settings import check_positive, convert_all, shorten, spell
 from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place, place
 
 __all__ = ["Surrogates", "random_field", "surrogates"]
@@ -44,6 +44,8 @@ def random_field(
     mask: ArrayLike | None = None,
     roi: ArrayLike | None = None,
     normalize: bool = True,
+    merge_coincident_points: bool = False,
+    merge_tolerance: float = 0.0,
     progress: Progress = None,
 ) -> NDArray[np.float64]:
     """Draw Gaussian random fields on a surface, of mean 0 and variance 1.
@@ -86,6 +88,8 @@ def random_field(
         Whether the variance is 1 at every point. Otherwise fields are divided by the standard
         deviation on the plane, and have more variance near the boundary of the surface (twice as much
         on a straight one), and where the surface is small beside the correlation.
+    merge_coincident_points : bool, default False
+        Whether points within `merge_tolerance`, default 0, of each other are one point of the surface.
     progress : bool or callable, optional
         As for :func:`heat`.
 
@@ -132,7 +136,11 @@ def random_field(
     _check_seed(seed)
     if not isinstance(normalize, (bool, np.bool_)):
         raise ValueError(f"normalize is {shorten(normalize)}; allowed: True or False")
-    fields = make_fields(surface, left_out(mask, roi, surface))
+    merging = convert_all("random_field", {"merge_coincident_points": merge_coincident_points,
+                                           "merge_tolerance": merge_tolerance})
+    for problem in _core.find_problems("random_field", merging, None):
+        raise ValueError(spell("random_field", problem, {}))
+    fields = make_fields(surface, left_out(mask, roi, surface), *merging.values())
     warn_of_edges(name, float(width), fields)
     result = np.empty((surface.n_points, n))
     with surface._lock, ProgressReporter(progress) as reporter:
@@ -357,14 +365,15 @@ def solve_nonnegative(matrix: NDArray[np.float64], b: NDArray[np.float64]) -> ND
     return x
 
 
-def make_fields(surface: Surface, mask: Any) -> Any:
+def make_fields(surface: Surface, mask: Any, merges: bool = False, tolerance: float = 0.0) -> Any:
     """The operators of random fields and scales, which a surface keeps for the last mask."""
     flags, on_faces = find_mask(mask, (surface.n_points, surface.n_faces))
-    version = hashlib.blake2b(b"" if flags is None else bytes([on_faces]) + flags.tobytes()).digest()
+    marks = b"" if flags is None else bytes([on_faces]) + flags.tobytes()
+    version = hashlib.blake2b(marks).digest(), merges, tolerance
     with surface._lock:
-        known, fields = surface._runs.get("fields", (b"", None))
+        known, fields = surface._runs.get("fields", (None, None))
         if version != known:
-            fields = _core.SurfaceFields(surface._core, flags, on_faces, None)
+            fields = _core.SurfaceFields(surface._core, flags, on_faces, merges, tolerance, None)
             surface._runs["fields"] = version, fields
     if fields.number_of_vertices() == 0:
         raise ValueError("no triangle of the surface is left; allowed: one or more that are not masked "

@@ -120,7 +120,10 @@ def _with_settings(function: F) -> F:
     for parameter in inspect.signature(function).parameters.values():
         if parameter.kind is not inspect.Parameter.VAR_KEYWORD:
             parameters.append(parameter)
+    own = {parameter.name for parameter in parameters}
     for setting in table.values():
+        if setting.keyword in own:
+            continue
         kind = {"number": "float", "integer": "int", "switch": "bool",
                 "numbers": "array_like"}.get(setting.kind, "")
         if setting.kind == "choice":
@@ -625,8 +628,8 @@ def denoise_mesh(
     Chen, TVCG 28(12), 2022). A surface counts as CAD if the displacements are as white as independent
     noise after this. Otherwise it is organic, and the result before is kept: details were lost.
 
-    Connected components have levels, kinds and units of length of their own. Noise that cannot be told
-    from the shape stays unless `noise_level` is given: that of components with less than 200 points, and
+    Connected components have levels, kinds and units of length of their own. Noise that cannot be
+    distinguished from the shape stays unless `noise_level` is given: that of components with less than 200 points, and
     of those with more than a quarter of the edges within flat faces. A surface whose estimated noise is
     0 stays as it is. Faces may be oriented at random, and the numbering of points and faces
     does not matter.
@@ -652,7 +655,7 @@ def denoise_mesh(
     -----
     SurfaceDiffusionWarning
         For triangles of zero area, for coincident points that may come apart, if no noise was found,
-        if it is correlated over several edges or cannot be told from the shape, if the volume of a
+        if it is correlated over several edges or like the shape, if the volume of a
         closed component changes by more than 2 %, and if points moved by more than 10 times its level.
 
     Examples
@@ -953,7 +956,7 @@ def curvature(
     plane. They are positive where the surface bends away from its normals: a sphere of radius R whose
     faces are counter-clockwise from outside has 1/R. Faces with another orientation than their
     neighbours count as turned, so that signs follow the larger part of the area. On surfaces with one
-    side, such as a Moebius strip, the sign cannot be told, and the mean is positive. Curvatures that the
+    side, such as a Moebius strip, the mean has no sign, and is positive. Curvatures that the
     rounding of the coordinates may cause, of single precision if all coordinates are such numbers, are 0.
 
     With ``fwhm=0`` a quadratic polynomial is fitted to the points of at most two edges from each
@@ -1116,7 +1119,8 @@ def _run_once(
             run.write(0, number, values, source)
 
         outputs = read_outputs(run.outputs(0), write, inputs, runner)
-        found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run)}
+        found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run),
+                 "turned": run.turned_triangles(0)}
         reporter.finish_part()  # last, because the callable may use the run
     warn(found["warnings"])
     return outputs, found

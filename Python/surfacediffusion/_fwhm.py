@@ -175,10 +175,7 @@ class _Edges:
 
     def __init__(self, surface: Surface) -> None:
         triangles, points = surface.triangles, surface.points
-        corners = points[triangles]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        area = 0.5 * np.linalg.norm(normals, axis=1)
-        self.areas = np.bincount(triangles.ravel(), np.repeat(area / 3, 3), surface.n_points)
+        area, self.areas = surface._areas_of_triangles(), surface._triangle_areas()
         ends = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         unique, inverse = np.unique(
             ends[:, 0].astype(np.int64) * surface.n_points + ends[:, 1], return_inverse=True)

@@ -25,8 +25,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 MAXIMUM_TRIANGLES = 4_000_000
 
 #: Edges per wavelength of a texture on a refined surface, and those that a mesh should have.
-EDGES_PER_WAVELENGTH = 8
-FEWEST_EDGES_PER_WAVELENGTH = 6
+EDGES_PER_WAVELENGTH = _core.edges_of_refinement
+FEWEST_EDGES_PER_WAVELENGTH = _core.edges_per_wavelength
 
 @dataclass(frozen=True)
 class RefinedSurface:
@@ -71,11 +71,16 @@ class RefinedSurface:
         return array[self.faces]
 
 
-def interpolate_points(array: NDArray[Any], parents: NDArray[Any], mask: bool = False) -> NDArray[Any]:
-    """Data (n, ...) of points, and between them: row n + i belongs to the middle of the two parents i. mask:
-    whether they are a mask, of which what is between a masked point and another one is masked."""
+#: How arguments at points become those between two: what is beside a masked point is masked, beside one of
+#: weight 0 has weight 0, and beside one without a mark has none; otherwise it has the smaller mark.
+RULES = {"mask": "mask", "fidelity": "weight", "fixed": "mark", "seeds": "mark", "sources": "mark"}
+
+
+def interpolate_points(array: NDArray[Any], parents: NDArray[Any], rule: str | None = None) -> NDArray[Any]:
+    """Data (n, ...) of points, and between them: row n + i belongs to the middle of the two parents i. rule: of
+    RULES; None: they are data."""
     n = len(array)
-    is_mark = array.dtype.kind != "f" and array.size == len(array)
+    is_mark = rule == "mark" or (array.dtype.kind != "f" and array.size == len(array))
     found = np.empty((n + len(parents), *array.shape[1:]), dtype=array.dtype)
     found[:n] = array
     # Parents come before their children: all that have known parents are found at once.
@@ -83,22 +88,16 @@ def interpolate_points(array: NDArray[Any], parents: NDArray[Any], mask: bool = 
     known = 0
     while known < len(parents):
         end = int(np.searchsorted(newest, n + known))
-        first, second = parents[known:end].T
-        if mask:
-            found[n + known:n + end] = np.where(found[first] == 0, found[second], found[first])
+        a, b = (found[side] for side in parents[known:end].T)
+        if rule == "mask":
+            between = np.where(a == 0, b, a)
         elif is_mark:
-            found[n + known:n + end] = np.minimum(found[first], found[second])
+            between = np.minimum(a, b)
         else:
-            mean = 0.5 * found[first] + 0.5 * found[second]
-            found[n + known:n + end] = mean if array.dtype.kind == "f" else np.floor(mean + 0.5)
+            between = 0.5 * a + 0.5 * b
+            between = between if array.dtype.kind == "f" else np.floor(between + 0.5)
+        found[n + known:n + end] = np.where((a == 0) | (b == 0), 0, between) if rule in ("weight", "mark") else between
         known = end
-    return found
-
-
-def interpolate_weights(weights: NDArray[Any], parents: NDArray[Any]) -> NDArray[Any]:
-    """As interpolate_points(), but what is between a point of weight 0 and another one has weight 0."""
-    without = interpolate_points(weights == 0, parents, mask=True)
-    found: NDArray[Any] = np.where(without, 0, interpolate_points(weights, parents))
     return found
 
 
@@ -119,7 +118,8 @@ def refine(
     Parameters
     ----------
     surface : Surface or tuple (points, faces)
-        The surface, without given `areas`. Polygons are cut into triangles first.
+        The surface, without given `areas`. Polygons are cut into triangles first; a surface without a
+        longer edge stays as it is.
     length : float
         The length of the longest edge allowed, above 0, in the unit of the coordinates.
     maximum_number_of_triangles : int, default 4,000,000
@@ -158,10 +158,12 @@ def _refine(surface: Surface, length: float, limit: Any, progress: Progress = Fa
     with surface._lock, ProgressReporter(progress) as reporter:
         if key not in surface._refined:
             found = _core.refine(surface._core, *key, reporter.callable)
+            stays = len(found["parents"]) == 0
             surface._refined.clear()
             surface._refined[key] = RefinedSurface(
-                Surface(found["points"], found["triangles"]), found["faces"][:, 0], found["parents"],
-                found["longest_edge"], found["limit_reached"])
+                surface if stays else Surface(found["points"], found["triangles"]),
+                np.arange(surface.n_faces, dtype=np.int32) if stays else found["faces"][:, 0],
+                found["parents"], found["longest_edge"], found["limit_reached"])
         refined: RefinedSurface = surface._refined[key]
         reporter.finish_part()
     if refined.limit_reached:
@@ -170,32 +172,10 @@ def _refine(surface: Surface, length: float, limit: Any, progress: Progress = Fa
     return refined
 
 
-def edge_lengths(points: NDArray[np.float64], triangles: NDArray[Any]) -> NDArray[np.float64]:
-    """The lengths of the distinct edges."""
-    edges = np.concatenate([triangles[:, :2], triangles[:, 1:], triangles[:, [0, 2]]])
-    edges = np.unique(np.sort(edges, axis=1), axis=0)
-    lengths: NDArray[np.float64] = np.linalg.norm(np.subtract(*points[edges.T]), axis=1)
-    return lengths
-
-
-def counted_lengths(points: NDArray[np.float64], triangles: NDArray[Any]) -> NDArray[np.float64]:
-    """Those that count in the mean edge length h: EdgeLengths.h."""
-    lengths = edge_lengths(points, triangles)
-    return lengths[lengths <= 30.0 * np.sort(lengths)[len(lengths) // 2]] if lengths.size else lengths
-
-
-def find_texture_length(surfaces: Sequence[Surface], feature_size: Any) -> float:
-    """The length of edges for a texture of this wavelength; 0 if those of the surfaces will do."""
-    if not (isinstance(feature_size, (int, float, np.number)) and 0 < feature_size < np.inf):
-        return 0.0
-    lengths = np.concatenate([counted_lengths(surface.points, surface.triangles) for surface in surfaces])
-    return texture_length(float(lengths.mean()), float(feature_size))
-
-
-def texture_length(mean: float, feature_size: float) -> float:
-    """The same from the mean edge length."""
-    is_coarse = feature_size < FEWEST_EDGES_PER_WAVELENGTH * mean
-    return feature_size / EDGES_PER_WAVELENGTH if is_coarse else 0.0
+def mean_edge_length(surfaces: Sequence[Any]) -> float:
+    """h of surfaces of the extension; 0 without an edge."""
+    total, number = np.sum([_core.sum_edges(surface) for surface in surfaces], axis=0)
+    return float(total / number) if number else 0.0
 
 
 def refine_as_asked(
@@ -203,19 +183,28 @@ def refine_as_asked(
 ) -> list[RefinedSurface] | None:
     """The surfaces with the keywords of a function; None if they stay as they are."""
     automatic = function == "turing_texture" and isinstance(refine_to, (int, float)) and refine_to == -1
-    length = (find_texture_length(surfaces, feature_size) if automatic
-              else as_length("refine_to", refine_to, zero=True))
+    if not automatic:
+        length = as_length("refine_to", refine_to, zero=True)
+    elif isinstance(feature_size, (int, float, np.number)) and feature_size > 0:
+        mean = mean_edge_length([surface._core for surface in surfaces])
+        length = _core.edge_length_for_features(feature_size, mean)
+    else:
+        length = 0.0
     if length == 0:
         return None
     if any(surface.areas is not None for surface in surfaces):
         raise ValueError(f"refine_to is {shorten(refine_to)}, but areas are given for the points; allowed: "
                          "one of them")
     refined = [_refine(surface, length, limit) for surface in surfaces]
+    longest = max((fine.longest_edge for fine in refined if fine.limit_reached), default=0.0)
+    if longest > 0.0 and len(surfaces) > 1:  # alike in every block
+        refined = [_refine(surface, longest, limit) for surface in surfaces]
+    triangles = sum(fine.surface.n_faces for fine in refined if len(fine.parents))
+    if not triangles:
+        return None
     if automatic:
-        triangles = sum(fine.surface.n_faces for fine in refined)
         warn([f"edges were bisected, to {triangles} triangles, because feature_size is {feature_size:g}, "
-              f"less than {FEWEST_EDGES_PER_WAVELENGTH} mean edge lengths (to keep the edges, set "
-              "refine_to to 0)"])
+              f"only {feature_size / mean:g} mean edge lengths (to keep the edges, set refine_to to 0)"])
     return refined
 
 
@@ -303,14 +292,7 @@ def take_along(
         if array.ndim not in (1, 2) or len(array) != (m if on_faces else n):
             raise ValueError(f"{name} has shape {array.shape}; allowed: one row per point, of which there "
                              f"are {n}, or per face, {m}")
-        if on_faces:
-            found = fine.at_faces(array)
-        elif name == "mask":  # what is between a masked point and another one is masked, as by roi
-            found = interpolate_points(array, fine.parents, mask=True)
-        elif name == "fidelity":
-            found = interpolate_weights(array, fine.parents)
-        else:
-            found = fine.at_points(array)
+        found = fine.at_faces(array) if on_faces else interpolate_points(array, fine.parents, RULES.get(name))
         carried[name] = place(found, on_faces)
         if name in _DATA and "on_faces" in given:
             carried["on_faces"] = on_faces

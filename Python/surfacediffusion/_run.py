@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._settings import convert_all, settings_of, shorten, spell
 from ._surface import (
-    Surface, as_directions, as_factors, as_flags, as_labels, as_rows, data_components, find_place,
+    Surface, as_directions, as_factors, as_flags, as_rows, data_components, find_place,
 )
 
 if TYPE_CHECKING:
@@ -167,14 +167,9 @@ class Input:
             directions, directed_faces = as_directions(directions_name, directions, (n, m))
         if rates is not None:
             rates = as_rows("rates", rates, m, 4, "face")
-            bad = ~(np.isfinite(rates) & (rates >= 0.0)).all(axis=1)
-            if bad.any():
-                row = int(np.argmax(bad))
-                raise ValueError(f"rates has {rates[row].tolist()} in row {row}; allowed: finite "
-                                 "numbers, 0 or more")
         self.data_on_faces = data_on_faces
         marks = {"mask": as_flags("mask", mask), "fixed": as_flags("fixed", fixed),
-                 "fidelity": as_factors("fidelity", fidelity), "seeds": as_labels("seeds", seeds)}
+                 "fidelity": as_factors("fidelity", fidelity), "seeds": as_factors("seeds", seeds)}
         places = ["data"] * data_on_faces + ["directions"] * directed_faces + [
             name for name, array, what in (("mask", mask, "flag"), ("fixed", fixed, "flag"),
                                            ("fidelity", fidelity, "number"), ("seeds", seeds, "label"))

@@ -21,8 +21,8 @@ from . import _core
 #: Settings of pipelines: an iterator over time steps needs no requests of times.
 HIDDEN = {"GenerateTimeSteps", "CheckpointMemoryLimit"}
 
-RENAMED = {"RandomSeed": "seed", "ResultOnCells": "result_on_faces",
-           "KeepCellDetail": "keep_face_detail"}
+RENAMED = {"RandomSeed": "seed", "ResultOnCells": "result_on_faces", "KeepCellDetail": "keep_face_detail",
+           "UpDirection": "up"}
 
 
 @dataclass(frozen=True)

@@ -4,18 +4,17 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
-from ._refinement import MAXIMUM_TRIANGLES, as_length, take_along
-from ._run import Progress, ProgressReporter, warn
-from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_numbers, find_mask
+from ._functions import _run_once, _with_settings
+from ._models import ARRAYS
+from ._run import Input, Progress, Runner
+from ._settings import snake_case
+from ._surface import Surface, SurfaceLike, as_data, as_surface
 
 
 @dataclass(frozen=True)
@@ -56,21 +55,15 @@ class ReliefResult:
     warnings: list[str] = field(repr=False)
 
 
+@_with_settings
 def relief(
     surface: SurfaceLike,
     values: ArrayLike,
     height: float,
     *,
-    base: float = 0.0,
-    levels: Literal["Smooth", "Two"] = "Smooth",
-    threshold: float = 0.5,
-    flank: float = 0.0,
     mask: ArrayLike | None = None,
-    overhang: float | None = None,
-    up: ArrayLike = (0.0, 0.0, 1.0),
     progress: Progress = False,
-    refine_to: float = 0.0,
-    maximum_number_of_triangles: int = MAXIMUM_TRIANGLES,
+    **properties: Any,
 ) -> ReliefResult:
     """Raise or carve values on a surface as relief, for printing.
 
@@ -85,27 +78,11 @@ def relief(
         The values at the points, usually from 0 to 1 as `texture` of :func:`turing_texture`.
     height : float
         The height of the value 1 above that of 0, in coordinate units; below 0 it is carved.
-    base : float, default 0
-        The height of the value 0.
-    levels : {"Smooth", "Two"} or in snake_case, default "Smooth"
-        "Two" is `base` where the value is below `threshold`, and ``base + height`` above.
-    threshold : float, default 0.5
-    flank : float, default 0
-        With two levels, the width of the slope between them, in coordinate units along the surface.
     mask : array_like, shape (n,) or (m,), optional
         Nonzero has no relief, at points or faces, such as faces that fit others.
-    overhang : float, 0 to 90, optional
-        No relief on faces that face down more steeply than this: the angle in degrees between the
-        normal and the horizontal. 0: on no face that faces down.
-    up : array_like, shape (3,), default (0, 0, 1)
-        The direction of printing, for `overhang`.
-    progress : bool or callable, default False
-        As for :func:`heat`.
-    refine_to : float, default 0
-        Edges that are longer are bisected first, and values and masks go along: the result belongs to
-        the points of ``refine(surface, refine_to).surface``. 0: the surface stays as it is.
-    maximum_number_of_triangles : int, default 4,000,000
-        Refinement stops before there are more, with a warning.
+    {progress}
+
+    {settings}
 
     Returns
     -------
@@ -136,65 +113,15 @@ def relief(
     >>> result.open_edges, result.crossing_triangles, round(result.smallest_wall, 1)
     (0, 0, 21.0)
     """
-    surface, rows, _ = take_along(surface, "relief", refine_to, maximum_number_of_triangles,
-                                  {"values": values, "mask": mask})
-    array, mask = as_numbers("values", rows["values"]), rows["mask"]
-    n = surface.n_points
-    if array.shape != (n,):
-        raise ValueError(f"values has shape {array.shape}; allowed: ({n},), one number per point")
-    numbers = np.ascontiguousarray(array, dtype=np.float64)
-    if not np.isfinite(numbers).all():
-        row = int(np.argmin(np.isfinite(numbers)))
-        raise ValueError(f"values is {numbers[row]} at point {row}; allowed: finite numbers")
-    if levels not in ("Smooth", "Two", "smooth", "two"):
-        raise ValueError(f"levels is {shorten(levels)}; allowed: Smooth or Two, or in snake_case")
-    heights = _core.relief_heights(
-        surface._core, numbers, _as_number("height", height), _as_number("base", base),
-        levels in ("Two", "two"), _as_number("threshold", threshold),
-        as_length("flank", flank, zero=True))[:, 0]
-    extent = float(np.linalg.norm(np.ptp(surface.points, axis=0)))
-    if not np.abs(heights).max() <= extent:
-        raise ValueError(f"height is {shorten(height)}, which makes a relief larger than the surface, of "
-                         f"{extent:.4g} from corner to corner; allowed: less")
-    heights[_smooth_points(surface, mask, overhang, up)] = 0.0
-    with ProgressReporter(progress) as reporter:
-        found = _core.relief(surface._core, heights, reporter.callable)
-        reporter.finish_part()
-    sentences = list(found["warnings"])
-    warn(sentences)
-    new = Surface(found["points"], found["triangles"])
-    counts = {name: found[name] for name in (
-        "lowered_points", "open_edges", "non_manifold_edges", "crossing_triangles_before",
-        "crossing_triangles", "smallest_wall", "volume_change")}
-    return ReliefResult(new, found["heights"][:, 0], warnings=sentences, **counts)
-
-
-def _smooth_points(surface: Surface, mask: Any, overhang: Any, up: Any) -> NDArray[np.bool_]:
-    """The points without relief."""
-    smooth = np.ones(surface.n_points, dtype=bool)
-    smooth[surface._connectivity] = False  # the points of a face; others stay
-    faces = np.zeros(surface.n_faces, dtype=bool)
-    flags, on_faces = find_mask(mask, (surface.n_points, surface.n_faces))
-    if flags is not None:
-        marked = faces if on_faces else smooth
-        marked |= flags != 0
-    if overhang is not None:
-        angle = _as_number("overhang", overhang)
-        axis = as_numbers("up", up).astype(float)
-        if not 0 <= angle <= 90:
-            raise ValueError(f"overhang is {shorten(overhang)}; allowed: 0 to 90 degrees")
-        if axis.shape != (3,) or not 0 < np.linalg.norm(axis) < np.inf:
-            raise ValueError(f"up is {shorten(up)}; allowed: three numbers that are not all 0")
-        x, y, z = axis.tolist()
-        smooth |= _core.relief_overhangs(surface._core, x, y, z, angle)[:, 0] != 0
-    if faces.any():
-        sizes = np.diff(surface._offsets)
-        smooth[surface._connectivity[np.repeat(faces, sizes)]] = True
-    return smooth
-
-
-def _as_number(name: str, value: Any) -> float:
-    real = isinstance(value, (int, float, np.number)) and not isinstance(value, (bool, np.bool_))
-    if not (real and math.isfinite(value)):
-        raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers")
-    return float(value)
+    surface = as_surface(surface)
+    if properties.get("overhang", 0) is None:
+        del properties["overhang"]
+    inputs = Input(surface, as_data("values", values, surface.n_points), mask=mask)
+    runner = Runner("relief", {"height": height, **properties}, ARRAYS)
+    outputs, found = _run_once("relief", inputs, runner, progress)
+    triangles = np.array(surface.triangles)
+    triangles[found["turned"]] = triangles[found["turned"]][:, [0, 2, 1]]
+    of_name = {output.name: output.values for output in outputs}
+    return ReliefResult(
+        Surface(of_name.pop("Points"), triangles), of_name.pop("ReliefHeight"), warnings=found["warnings"],
+        **{snake_case(name): value for name, value in of_name.items()})

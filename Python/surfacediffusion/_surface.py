@@ -107,25 +107,8 @@ def as_directions(
     if n == m and on_faces is None:
         raise ValueError(f"{name} has one row per point and per face, of which there are {n} each; "
                          f"allowed: on_points({name}) or on_faces({name})")
-    infinite = np.isinf(array).any(axis=1)
-    if infinite.any():
-        raise ValueError(f"{name} is infinite in row {int(np.argmax(infinite))}; allowed: finite values "
-                         "and NaN")
     return (np.ascontiguousarray(array, dtype=np.float64),
             array.shape[0] == m if on_faces is None else on_faces)
-
-
-def as_labels(name: str, values: Any) -> NDArray[np.int64] | None:
-    """Labels 1, 2, ..., 0 for none; None stays."""
-    if values is None:
-        return None
-    array = as_numbers(name, values)
-    bad = ~((array >= 0) & (array == np.floor(array)) & (array < 2**31))
-    if bad.any():
-        row = int(np.argmax(bad))
-        raise ValueError(f"{name} is {array[row]} in row {row}; allowed: the labels 1 to "
-                         "number_of_regions, and 0 for those that are free")
-    return np.ascontiguousarray(array, dtype=np.int64)
 
 
 def as_flags(name: str, values: Any, points: int | None = None) -> NDArray[np.uint8] | None:
@@ -341,11 +324,15 @@ class Surface:
         self._core.set_area_factors(factors)
         return given
 
-    def _triangle_areas(self) -> NDArray[np.float64]:
-        """A third of the triangles at each point (n,)."""
-        triangles = self.triangles
-        a, b, c = (self._points[triangles[:, i]] for i in range(3))
-        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    def _areas_of_triangles(self) -> NDArray[np.float64]:
+        a, b, c = (self._points[self.triangles[:, i]] for i in range(3))
+        return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
+
+    def _triangle_areas(self, excluded: Any = None) -> NDArray[np.float64]:
+        """A third of the triangles at each point (n,), without those of a point that is excluded."""
+        triangles, area = self.triangles, self._areas_of_triangles()
+        if excluded is not None:
+            area[excluded[triangles].any(axis=1)] = 0.0
         return np.bincount(triangles.ravel(), np.repeat(area / 3, 3), self.n_points)
 
     @property

@@ -72,7 +72,7 @@ from ._models import (
     ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
 )
 from ._refinement import (
-    ESTIMATING, RefinedSurface, interpolate_points, interpolate_weights, keywords_of, refine_as_asked,
+    ESTIMATING, RULES, RefinedSurface, interpolate_points, keywords_of, refine_as_asked,
 )
 from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
@@ -83,11 +83,10 @@ from ._scales import scale_filter as _scale_filter
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
 from ._surface import Surface, as_data, as_outside, has_integers, place
+from .paraview._surfaces import ABSENT, cell_flags, cut_strips, polygons_of
 
 __all__: list[str] = []
 __all__ += [*_functions.__all__, "distance", "random_field", "relief", "scale_filter", "surrogates"]
-
-_ABSENT = 1 | 32  #: bits of vtkGhostType: duplicate and hidden cells
 
 
 def _of_data(name: str, results: str) -> Callable[..., Any]:
@@ -267,28 +266,28 @@ def denoise_mesh(
 
 def relief(
     mesh: Any, array: str, height: float, *, mask: str | None = None, return_result: bool = False,
-    progress: Progress = False, result_array_name: str = "ReliefHeight", **keywords: Any,
+    progress: Progress = False, **properties: Any,
 ) -> Any:
     """Raise or carve values on the mesh as relief, for printing.
 
     array: point array (n,) of the values, usually Texture of turing_texture(). mask: point or cell
     array; points, and the points of cells, with a nonzero value have no relief. The method and all other
     keywords are described in help(surfacediffusion.relief). The result has moved points and the point
-    array ReliefHeight (n,), the heights that were used; meshes of triangles are oriented outwards.
+    array ReliefHeight (n,), the heights that were used; polygons are oriented outwards.
     Active point normals are computed again, and cell normals and tangents are dropped. return_result: if
     True, the function returns a pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
     """
-    blocks, results = _find_surfaces(mesh, "relief", keywords), []
+    properties, name = _keywords("relief", properties)
+    blocks, results = _find_surfaces(mesh, "relief", properties), []
     for block in blocks:
         values = block.find("array", array)
         marks = block.find("mask", mask, faces=True)
-        result = _relief(block.surface, values, height, mask=marks, progress=progress, **keywords)
+        result = _relief(block.surface, values, height, mask=marks, progress=progress, **properties)
         results.append(result)
-        block.add(result_array_name, result.heights, False)
+        block.add(name or "ReliefHeight", result.heights, False)
         block.move(result.surface.points)
-        triangles = result.surface.triangles
-        if not block.has_strips and len(triangles) == block.mesh.n_cells:
-            block.mesh.faces = np.insert(triangles, 0, 3, axis=1).ravel()
+        turned = (result.surface.triangles != block.surface.triangles).any(axis=1)
+        block.turn(block.surface._core.faces()[turned])
         normals = block.mesh.point_data.active_normals_name
         if normals is not None:
             block.mesh.point_data[normals] = result.surface._point_normals()
@@ -343,7 +342,7 @@ def distance(
     -1. The field array EffectiveMethod says which method was taken. result_array_name is the prefix of the
     names.
     """
-    blocks = _find_surfaces(mesh, "distance", {})
+    blocks = _find_surfaces(mesh, "distance", properties)
     given = getattr(sources, "points", sources)
     for block in blocks:
         arrays = {"speed": block.find("speed", speed, faces=True),
@@ -377,7 +376,7 @@ def distance(
 def random_field(
     mesh: Any, n: int = 1, *, fwhm: float | None = None, range: float | None = None, nu: int = 1,
     seed: int = 0, normalize: bool = True, mask: str | None = None, roi: str | None = None,
-    progress: Progress = False, result_array_name: str | None = None,
+    progress: Progress = False, result_array_name: str | None = None, **merging: Any,
 ) -> Any:
     """Draw Gaussian random fields of mean 0 and variance 1 on the mesh.
 
@@ -391,7 +390,7 @@ def random_field(
     for block in blocks:
         found = _random_field(
             block.surface, n, fwhm=fwhm, range=range, nu=nu, seed=seed, normalize=normalize,
-            mask=block.find_left_out(mask, roi), progress=progress)
+            mask=block.find_left_out(mask, roi), progress=progress, **merging)
         _add_columns(block, name, found)
     return _rebuild(mesh, iter(blocks))
 
@@ -532,11 +531,9 @@ class _Block:
         if not isinstance(name, str):
             raise ValueError(f"{argument} is {shorten(name)}; allowed: the name of an array")
         if points and name in self.mesh.point_data:
-            if self.refined is not None and argument in ("mask", "fidelity") and name in self.origin.point_data:
-                # What is between a masked or weightless point and another one is so, too.
-                given, parents = np.asarray(self.origin.point_data[name]), self.refined.parents
-                return place(interpolate_points(given, parents, mask=True) if argument == "mask"
-                             else interpolate_weights(given, parents), False)
+            if self.refined is not None and argument in RULES and name in self.origin.point_data:
+                given = np.asarray(self.origin.point_data[name])
+                return place(interpolate_points(given, self.refined.parents, RULES[argument]), False)
             return place(self.mesh.point_data[name], False)
         if faces and name in self.mesh.cell_data:
             return place(np.asarray(self.mesh.cell_data[name])[self.face_cells], True)
@@ -587,6 +584,15 @@ class _Block:
         if "Tangents" in self.input.point_data:
             self.mesh.point_data.remove("Tangents")
 
+    def turn(self, faces: NDArray[Any]) -> None:
+        """Reverse the polygons of these faces."""
+        cells = np.unique(self.face_cells[faces]) - self.mesh.n_verts - self.mesh.n_lines
+        polygons = type(self.mesh.GetPolys())()
+        polygons.DeepCopy(self.mesh.GetPolys())
+        for cell in cells[cells < polygons.GetNumberOfCells()].tolist():
+            polygons.ReverseCellAtId(cell)
+        self.mesh.SetPolys(polygons)
+
     def with_edges(self, fine: RefinedSurface) -> _Block:
         """The block with the triangles of a finer surface in place of its faces, and with its data."""
         given, cells = self.input, self.face_cells[fine.faces]
@@ -626,44 +632,19 @@ class _Block:
 
 def _find_faces(mesh: pyvista.PolyData) -> tuple[Any, NDArray[np.int64]]:
     """The polygons, and strips as triangles, without hidden and ghost cells; the cell of each."""
-    padded = np.asarray(mesh.faces)
-    before = mesh.n_verts + mesh.n_lines
-    regular = int(padded[0]) + 1 if padded.size else 4
-    cells: Any
-    if padded.size % regular == 0 and (padded[::regular] == regular - 1).all() and regular > 3:
-        faces: Any = padded.reshape(-1, regular)[:, 1:]
-        cells = before + np.arange(len(faces))
-    else:
-        faces, cells, cell = [], [], before
-        for polygon in _split(padded):
-            if len(polygon) > 2:
-                faces.append(polygon)
-                cells.append(cell)
-            cell += 1
-    strips = np.asarray(mesh.strips)
-    if strips.size:
-        faces, cells, cell = list(faces), list(cells), before + mesh.GetNumberOfPolys()
-        for strip in _split(strips):
-            for i in range(len(strip) - 2):
-                faces.append(strip[[i, i + 1 + i % 2, i + 2 - i % 2]])
-                cells.append(cell)
-            cell += 1
-    cells = np.asarray(cells, dtype=np.int64)
-    if "vtkGhostType" in mesh.cell_data:
-        present = (np.asarray(mesh.cell_data["vtkGhostType"])[cells] & _ABSENT) == 0
-        cells = cells[present]
-        faces = (faces[present] if isinstance(faces, np.ndarray)
-                 else [face for face, kept in zip(faces, present) if kept])
-    return faces, cells
-
-
-def _split(padded: NDArray[Any]) -> Iterator[NDArray[Any]]:
-    """The cells of an array [size, point, point, ..., size, ...]."""
-    begin = 0
-    while begin < len(padded):
-        size = int(padded[begin])
-        yield padded[begin + 1 : begin + 1 + size]
-        begin += 1 + size
+    corners, offsets = polygons_of(mesh.GetPolys())
+    sizes = np.diff(offsets)
+    first = mesh.n_verts + mesh.n_lines
+    triangles, of_strips = cut_strips(mesh.GetStrips(), first + len(sizes), mesh.n_points)
+    is_regular = len(triangles) == 0 and len(np.unique(sizes)) == 1 and sizes[0] > 2
+    faces: Any = (corners.reshape(-1, sizes[0]) if is_regular else
+                  [*np.split(corners, offsets[1:-1])[:len(sizes)], *triangles])
+    cells = np.append(first + np.arange(len(sizes)), of_strips)
+    kept = np.append(sizes > 2, np.ones(len(of_strips), dtype=bool))
+    flags = cell_flags(mesh)
+    if flags is not None:
+        kept &= (flags[cells] & ABSENT) == 0
+    return faces[kept] if is_regular else [faces[i] for i in np.flatnonzero(kept)], cells[kept]
 
 
 def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_Block]:
@@ -678,7 +659,8 @@ def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_
     refined = refine_as_asked([block.surface for block in blocks], function, refine_to, limit,
                               keywords.get("feature_size", 0.0))
     if refined is not None:
-        blocks = [block.with_edges(fine) for block, fine in zip(blocks, refined)]
+        blocks = [block.with_edges(fine) if len(fine.parents) else block
+                  for block, fine in zip(blocks, refined)]
     return blocks
 
 
@@ -853,22 +835,18 @@ def _run(
         output, reports = runner.finish(run, inputs, build, progress)
         return (output, reports) if return_result else output
     runner.call(run.update, [given.core for given in inputs], runner.settings, None)
-    steps = [_find_step(time, run, runner.interval) for time in times]
+    steps = [_find_step(time, run, runner) for time in times]
     ordered = sorted(set(steps))
     built = dict(zip(ordered, map(build, runner.visit(run, inputs, ordered, progress))))
     outputs = [built[step][0] for step in steps]
     return (outputs, [built[step][1] for step in steps]) if return_result else outputs
 
 
-def _find_step(time: Any, run: Any, interval: int) -> int:
+def _find_step(time: Any, run: Any, runner: Runner) -> int:
     """The last step at or before a time whose state is published."""
     if not isinstance(time, (int, float, np.number)) or not float(time) >= 0.0:
         raise ValueError(f"times has {shorten(time)}; allowed: numbers, 0 or more")
-    last = run.number_of_steps()
-    step = float(time) / run.time_step() + 1e-9  # it may have lost its last bits
-    if step >= last:
-        return int(last)
-    return max(0, int(step) // interval * interval)
+    return _core.find_step(runner.function, runner.settings, float(time), run.number_of_steps())
 
 
 class _Accessor:

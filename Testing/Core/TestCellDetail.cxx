@@ -375,6 +375,33 @@ TEST(CellDetail, TimeStepsTendToTheSteadyState)
   }
 }
 
+TEST(CellDetail, ColumnsOfTheirOwnWeightsAreAsIfAlone)
+{
+  CellInput input(Joined(Torus(20, 12), Moved(Icosphere(3), { 6.0, 0.0, 0.0 })));
+  const Index count = input.Data.NumberOfCells;
+  const Values noise = WhiteNoise(count, 2);
+  const Values ofBoth = input.Data.Data.Values;
+  Values data(count, 2);
+  for (Index c = 0; c < count; ++c)
+  {
+    const bool isSphere = c >= 2 * 20 * 12;
+    data(c, 0) = ofBoth(c, 0) + 0.1 * noise(c, 0);
+    data(c, 1) = ofBoth(c, 0) + (isSphere ? 0.6 : 0.1) * noise(c, 1);
+  }
+  HeatSettings settings;
+  settings.Units = UnitsMode::Absolute;
+  settings.Mode = HeatMode::SteadyState;
+  settings.AutomaticFidelity = true;
+  input.Data.Data.Values = data;
+  const Values together = CellResultOf(input, settings);
+  for (Eigen::Index k = 0; k < 2; ++k)
+  {
+    input.Data.Data.Values = data.col(k);
+    const Values alone = CellResultOf(input, settings);
+    EXPECT_LT((together.col(k) - alone).cwiseAbs().maxCoeff(), 1e-6) << k;
+  }
+}
+
 TEST(CellDetail, FlowsThroughEdgesOfManyTriangles)
 {
   CellInput input(ThreeFins(10));

@@ -399,6 +399,58 @@ TEST(DistanceRun, GoesAroundBarriersOfSpeedZeroAndOfMasks)
   EXPECT_EQ(closed.Numbers.at("NumberOfUnreachedPoints")(0, 0), 21.0 * 20.0);
 }
 
+TEST(DistanceRun, SourcesWithinBarriersDoNotCount)
+{
+  const Shape strip = Strip(40, 20, 4.0, 2.0);
+  const Index source = 41 * 10 + 20, within = 41 * 10 + 10, beside = 41 * 10 + 11;
+  SurfaceData data;
+  data.Speeds.OnCells = true;
+  for (const auto& corners : strip.Faces.rowwise())
+  {
+    data.Speeds.Values.push_back((corners.array() == within).any() ? 0.0 : 1.0);
+  }
+  const Solution found = From(strip, { { source, 1.0 }, { within, 2.0 }, { beside, 3.0 } }, data);
+  EXPECT_EQ(found.Numbers.at("NumberOfSources")(0, 0), 2.0);
+  EXPECT_EQ(found.Result(within, 0), Never);
+  EXPECT_EQ(found.Result(beside, 0), 0.0);
+  auto shapes = std::make_shared<SourceShapes>();
+  shapes->OfPoints = { source, within, beside };
+  shapes->Places = Points::Zero(3, 3);
+  data.Sources = shapes;
+  EXPECT_EQ(Distance(strip.Vertices, strip.Faces, data, {}).Result, found.Result);
+}
+
+// Points that are merged into one may have sources of several names.
+TEST(DistanceRun, SourcesAtOneVertexAreNeighboursOfEachOfTheirNames)
+{
+  Shape strip = Strip(40, 20, 4.0, 2.0);
+  strip.Vertices.col(0) += 0.33 * strip.Vertices.col(1); // ways between the sources are shorter
+  const Index n = strip.NumberOfVertices(), row = 41 * 10;
+  strip.Vertices.conservativeResize(n + 41, 3);
+  strip.Vertices.bottomRows(41) = strip.Vertices.middleRows(row, 41).eval();
+  for (Eigen::Index k = 0; k < 3 * 2 * 40 * 10; ++k)
+  {
+    Index& corner = strip.Faces.data()[k];
+    corner = corner >= row ? n + corner - row : corner; // both are used
+  }
+  SurfaceData data;
+  data.Data.Values = Values::Zero(n + 41, 1);
+  data.Data.Values.bottomRows(41).setConstant(2.0);
+  for (const double y : strip.Vertices.col(1))
+  {
+    data.Speeds.Values.push_back(y > 1.25 ? 4.0 : 1.0);
+  }
+  DistanceSettings settings;
+  settings.MergeCoincidentPoints = true;
+  const auto times = [&] { return Distance(strip.Vertices, strip.Faces, data, settings).Result; };
+  const Values ofLine = times();
+  for (Index i = row; i < row + 41; i += 2)
+  {
+    data.Data.Values(i, 0) = 1.0; // they come first
+  }
+  EXPECT_LT((times() - ofLine).cwiseAbs().maxCoeff(), 1e-13);
+}
+
 TEST(DistanceRun, LabelsOfRegionsAreTheirValues)
 {
   const Shape s = Icosphere(3);

@@ -418,6 +418,36 @@ TEST(ExactDistance, TheNearestOfSeveralSourcesIsNamed)
   }
 }
 
+TEST(ExactDistance, DistancesNearOneSourceAfterAnotherAreThoseOfEach)
+{
+  const Surface s = Icosphere(4);
+  const ExactOn on(s);
+  const auto mesh = std::make_shared<const TriangleMesh>(s.Vertices, s.Faces);
+  const ExactDistance exact(mesh);
+  const double cutoff = 0.3 / mesh->LengthUnit();
+  ExactDistance::Memories memories;
+  for (const Index source : { 5, 100, 6, 5 })
+  {
+    const auto near = exact.FindNear(on.At(source), cutoff, memories);
+    const std::vector<double> all = exact.Find({ on.At(source) }, cutoff).Times;
+    std::size_t reached = 0;
+    for (Index i = 0; i < mesh->NumberOfVertices(); ++i)
+    {
+      const double time = all[static_cast<std::size_t>(i)];
+      if (time < Never)
+      {
+        ASSERT_LT(reached, near.size());
+        EXPECT_EQ(near[reached], std::make_pair(i, time));
+        ++reached;
+      }
+    }
+    EXPECT_EQ(reached, near.size());
+  }
+  EXPECT_EQ(memories.Free.size(), 1u);
+  const ProgressMonitor::Callback stop = [](double) { return false; };
+  EXPECT_THROW(exact.FindNear(on.At(5), Never, memories, ProgressMonitor(stop)), Aborted);
+}
+
 TEST(ExactDistance, WorkEndsOnNeedlesAndAtARequest)
 {
   // A tube of width 1e-6 and length 1, with triangles of all directions and edges of three

@@ -122,8 +122,8 @@ TEST(InterpolationExact, HoldsValuesNearToEachOtherOnEverySideOfAnEdge)
       }
       const Values u = Interpolate(assembler, data, InterpolationSettings(Choice::Exact)).U;
       const double misfit = LargestMisfit(data, u);
-      std::printf("%d vertices, %g edges apart: misfit %.1e\n", mesh.NumberOfVertices(), apart,
-        misfit);
+      std::printf(
+        "%d vertices, %g edges apart: misfit %.1e\n", mesh.NumberOfVertices(), apart, misfit);
       EXPECT_LT(misfit, 2e-6);
     }
   }

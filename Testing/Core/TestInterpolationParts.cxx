@@ -32,8 +32,7 @@ Values InInputOrder(const Surface& s, const std::shared_ptr<const Assembler>& as
   Interpolation::Settings scaled = settings;
   scaled.Kappa *= assembler->Mesh().LengthUnit() / size;
   scaled.Mu *= std::pow(size / assembler->Mesh().LengthUnit(), 2);
-  return ToInput(
-    assembler->Mesh(), Interpolate(assembler, data, scaled).U, s.NumberOfVertices());
+  return ToInput(assembler->Mesh(), Interpolate(assembler, data, scaled).U, s.NumberOfVertices());
 }
 
 Values Fitted(const Surface& s, const Interpolation::Settings& settings, double size = 1.0)
@@ -92,8 +91,7 @@ TEST(InterpolationParts, HaveTheLeastScoreEachWhateverTheirSizes)
     {
       field(i, 0) = given[static_cast<std::size_t>(begin + mesh.InputVertex()[i])];
     }
-    const auto data =
-      ValuesAt(mesh, field, [&](Index i) { return !std::isnan(given[begin + i]); });
+    const auto data = ValuesAt(mesh, field, [&](Index i) { return !std::isnan(given[begin + i]); });
     return Interpolate(assembler, data, InterpolationSettings(Choice::Automatic));
   };
   Surface octahedron = s;
@@ -102,15 +100,32 @@ TEST(InterpolationParts, HaveTheLeastScoreEachWhateverTheirSizes)
   Surface disk;
   disk.Vertices = s.Vertices.bottomRows(7);
   disk.Faces = s.Faces.bottomRows(6).array() - 6;
-  const double least = (4.0 * fit(octahedron, 0).Columns[0].Score +
-                         6.0 * fit(disk, 6).Columns[0].Score) /
-    10.0;
+  const double least =
+    (4.0 * fit(octahedron, 0).Columns[0].Score + 6.0 * fit(disk, 6).Columns[0].Score) / 10.0;
   for (const double size : { 1.0, 10.0, 0.1 })
   {
     const double score = fit(Scaled(s, size), 0).Columns[0].Score;
     std::printf("size %g: score %.6f, of the parts alone %.6f\n", size, score, least);
     EXPECT_NEAR(score, least, 1e-6 * least);
   }
+}
+
+TEST(InterpolationParts, AreFreeAtBoundariesAndNaturalWithoutThem)
+{
+  const Surface both = Joined(Icosphere(2), Moved(Disk(6), { 3.0, 0.0, 0.0 }));
+  Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
+  const auto fitted = [&](RimCondition rim)
+  {
+    settings.Rim = rim;
+    return Fitted(both, settings);
+  };
+  const Eigen::Index ofBall = Icosphere(2).NumberOfVertices();
+  const Values found = fitted(RimCondition::Automatic);
+  const Values natural = fitted(RimCondition::Natural);
+  EXPECT_EQ(found.topRows(ofBall), natural.topRows(ofBall));
+  const Eigen::Index ofDisk = found.rows() - ofBall;
+  EXPECT_EQ(found.bottomRows(ofDisk), fitted(RimCondition::Free).bottomRows(ofDisk));
+  EXPECT_GT((found - natural).bottomRows(ofDisk).cwiseAbs().maxCoeff(), 0.1);
 }
 
 TEST(InterpolationParts, MayBeThousands)

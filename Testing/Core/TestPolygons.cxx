@@ -100,3 +100,23 @@ TEST(Polygons, AnyPolygonGivesTwoTrianglesLessThanCorners)
   EXPECT_EQ(4u, CutPolygon(flat).size());
   EXPECT_EQ(1u, CutPolygon({ Row3(0, 0, 0), Row3(1, 0, 0), Row3(0, 1, 0) }).size());
 }
+
+TEST(Polygons, AreCutAlikeAtAnySize)
+{
+  const Polygon arrow = { Row3(0, 0, 0), Row3(2, -2, 0), Row3(1, 0, 0), Row3(2, 2, 0) };
+  const Polygon cross = { Row3(0, 1, 0), Row3(1, 1, 0), Row3(1, 0, 0), Row3(2, 0, 0), Row3(2, 3, 0),
+    Row3(0, 3, 0) };
+  for (const Polygon& polygon : { arrow, cross })
+  {
+    for (const double scale : { 1e-250, 1e-150, 1e150, 1e250 })
+    {
+      Polygon scaled;
+      for (const Row3& corner : polygon)
+      {
+        scaled.push_back(scale * corner);
+      }
+      EXPECT_EQ(CutPolygon(polygon), CutPolygon(scaled)) << scale;
+    }
+  }
+  EXPECT_TRUE(CutPolygon({ Row3(0, 0, 0), Row3(1, 0, 0) }).empty());
+}

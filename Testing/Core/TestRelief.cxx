@@ -471,6 +471,37 @@ TEST(TriangleStars, LeaveFewPairsOfTrianglesAroundAVertexOrAnEdge)
   }
 }
 
+TEST(TriangleStars, AreNotAllVisitedForEachTriangle)
+{
+  const Index size = 130;
+  Surface s = Cone(size);
+  for (double offset = 3.0; offset < 500.0; offset *= 2.0)
+  {
+    s = Joined(s, Moved(s, { offset, 0.0, 0.0 }));
+  }
+  const Index count = s.NumberOfTriangles() / size;
+  EXPECT_EQ(count, 256);
+  const TriangleStars stars(s.Vertices, s.Faces);
+  Index boxes = 0;
+  for (Index t = 0; t < s.NumberOfTriangles(); t += size)
+  {
+    TriangleStars::Box box;
+    for (int a = 0; a < 3; ++a)
+    {
+      box.extend(s.Vertices.row(s.Faces(t, a)).transpose());
+    }
+    stars.VisitMeeting(
+      t,
+      [&](const TriangleStars::Box& other)
+      {
+        ++boxes;
+        return box.intersects(other);
+      },
+      [](Index) {});
+  }
+  EXPECT_LT(boxes, 50 * count);
+}
+
 /// The star of a vertex with folds, cut by a plane: the same triangles cross in a star that is
 /// large and in the halves of it that are not.
 TEST(TriangleStars, HaveAllTrianglesThatCross)

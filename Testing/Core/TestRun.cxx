@@ -217,6 +217,49 @@ TEST(Run, WithTheSameInputsAndSettingsComputesNothing)
   EXPECT_EQ(first, second);
 }
 
+namespace
+{
+
+/// Counts the sums over processes, of which there is one.
+class CountingReduction : public Reduction
+{
+public:
+  CountingReduction()
+    : Reduction(Reduction::Kind::Distributed)
+  {
+  }
+  using Reduction::Sum;
+  void Sum(double*, Index) const override { ++this->Sums; }
+  mutable int Sums = 0;
+};
+
+class WholeSurface : public Decomposition
+{
+public:
+  double FindLengthUnit() override { return 1.0; }
+  void Attach(SurfaceDiffusion::Surface&, SolverStore&) override {}
+  Index NumberOfCopies() const override { return 0; }
+};
+
+} // namespace
+
+TEST(Run, MeasuresTheEdgesOfASurfaceOnce)
+{
+  const RunInput input(Testing::Icosphere(2));
+  BlockInput block = input.Block();
+  WholeSurface whole;
+  block.Decomposition = &whole;
+  const CountingReduction processes;
+  SurfaceDiffusion::Run run(SerialFor());
+  const auto update = [&]
+  { run.Update({ block }, std::make_shared<HeatSettings>(), processes, ProgressMonitor()); };
+  update();
+  const int sums = processes.Sums;
+  EXPECT_GT(sums, 0);
+  update();
+  EXPECT_EQ(processes.Sums, sums);
+}
+
 TEST(Run, AfterAnyEditEqualsANewRun)
 {
   RunInput input(Testing::Icosphere(3));

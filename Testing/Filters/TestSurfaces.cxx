@@ -374,6 +374,59 @@ TEST(Surfaces, PartitionsOfStripsAreOneSurface)
   }
 }
 
+TEST(Surfaces, MasksOfPiecesMayHaveAnyTypes)
+{
+  const auto resultOf = [](int mask, int secondMask, int fixed, int secondFixed)
+  {
+    vtkNew<vtkPartitionedDataSet> partitions;
+    for (const int p : { 0, 1 })
+    {
+      auto part = Grid(4, 5);
+      for (vtkIdType i = 0; i < 20; ++i)
+      {
+        double x[3];
+        part->GetPoint(i, x);
+        part->GetPoints()->SetPoint(i, x[0] + 3 * p, x[1], x[2]);
+      }
+      AddPlaceData(part);
+      const auto add = [&](const char* name, int type, vtkIdType marked)
+      {
+        const auto flags = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+        flags->SetName(name);
+        flags->SetNumberOfTuples(20);
+        flags->Fill(0.0);
+        flags->SetComponent(marked, 0, type == VTK_INT ? 256.0 : 1.0);
+        part->GetPointData()->AddArray(flags);
+      };
+      add("mask", p == 0 ? mask : secondMask, 5);
+      add("fixed", p == 0 ? fixed : secondFixed, 10);
+      partitions->SetPartition(static_cast<unsigned int>(p), part);
+    }
+    vtkNew<vtkFVMHeatFilter> filter;
+    filter->SetInputDataObject(partitions);
+    SetInputArray(filter, 1, "mask");
+    SetInputArray(filter, 3, "fixed");
+    Messages messages(filter);
+    filter->Update();
+    EXPECT_TRUE(messages.Errors.empty()) << messages.Errors.front();
+    std::vector<double> values;
+    auto* const output = vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    for (unsigned int p = 0; p < 2; ++p)
+    {
+      vtkDataArray* const u = output->GetPartition(p)->GetPointData()->GetArray("fDiffused");
+      for (vtkIdType i = 0; u && i < 20; ++i)
+      {
+        values.push_back(u->GetComponent(i, 0));
+      }
+    }
+    return values;
+  };
+  const std::vector<double> ofOneType = resultOf(VTK_INT, VTK_INT, VTK_INT, VTK_INT);
+  EXPECT_EQ(ofOneType.size(), 40u);
+  EXPECT_EQ(resultOf(VTK_UNSIGNED_CHAR, VTK_INT, VTK_FLOAT, VTK_ID_TYPE), ofOneType);
+  EXPECT_EQ(resultOf(VTK_INT, VTK_DOUBLE, VTK_INT, VTK_UNSIGNED_CHAR), ofOneType);
+}
+
 TEST(Surfaces, CollinearPolygonsAreIgnoredTriangleByTriangle)
 {
   auto surface = Grid(5, 5);

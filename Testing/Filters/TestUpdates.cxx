@@ -8,8 +8,16 @@
 
 #include "vtkAppendPolyData.h"
 #include "vtkElevationFilter.h"
+#include "vtkExecutive.h"
+#include "vtkInformation.h"
+#include "vtkInformationIntegerKey.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkObjectFactory.h"
+#include "vtkPartitionedDataSet.h"
 #include "vtkPlatonicSolidSource.h"
 #include "vtkSphereSource.h"
+#include "vtkTrivialProducer.h"
 
 #include <gtest/gtest.h>
 
@@ -288,6 +296,73 @@ TEST(Updates, OneOfSeveralPiecesIsAnErrorUnlessDeclaredWhole)
   filter->UpdatePiece(0, 2, 0);
   EXPECT_EQ(messages.Errors.size(), 1u);
   EXPECT_NE(Result(filter, "NormalsDiffused"), nullptr);
+}
+
+namespace
+{
+
+/// A surface that is in the first piece, however many it is asked for.
+class OnePiece : public vtkPolyDataAlgorithm
+{
+public:
+  static OnePiece* New();
+  vtkTypeMacro(OnePiece, vtkPolyDataAlgorithm);
+  vtkSmartPointer<vtkPolyData> Surface;
+
+protected:
+  OnePiece() { this->SetNumberOfInputPorts(0); }
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    outputs->GetInformationObject(0)->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+    return 1;
+  }
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs) override
+  {
+    vtkPolyData::GetData(outputs)->ShallowCopy(this->Surface);
+    return 1;
+  }
+};
+vtkStandardNewMacro(OnePiece);
+
+} // namespace
+
+TEST(Updates, APieceThatWasRefusedIsTakenAsAWholeSurface)
+{
+  vtkNew<OnePiece> source;
+  source->Surface = Sphere(2);
+  AddRough(source->Surface);
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputConnection(source->GetOutputPort());
+  Messages messages(filter);
+  filter->UpdatePiece(0, 2, 0);
+  filter->UpdatePiece(0, 2, 0);
+  EXPECT_EQ(messages.Errors.size(), 1u);
+  filter->UpdatePiece(0, 1, 0);
+  EXPECT_EQ(messages.Errors.size(), 1u);
+  EXPECT_NE(Result(filter), nullptr);
+}
+
+TEST(Updates, PiecesThatDoNotAgreeAreTakenAsSurfacesOfTheirOwn)
+{
+  const auto first = Sphere(2), second = Sphere(2);
+  AddRough(first);
+  AddRough(second, 3);
+  vtkNew<vtkPartitionedDataSet> pieces;
+  pieces->SetPartition(0, first);
+  pieces->SetPartition(1, second);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, first);
+  blocks->SetBlock(1, second);
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(pieces);
+  vtkNew<vtkFVMHeatFilter> filter;
+  filter->SetInputConnection(producer->GetOutputPort());
+  Messages messages(filter);
+  EXPECT_EQ(filter->GetExecutive()->Update(), 0);
+  producer->SetOutput(blocks);
+  EXPECT_EQ(filter->GetExecutive()->Update(), 1);
+  EXPECT_EQ(messages.Errors.size(), 1u);
 }
 
 TEST(Updates, OneOfSeveralPiecesIsAnErrorBehindOtherFiltersToo)

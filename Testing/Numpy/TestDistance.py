@@ -273,7 +273,7 @@ class Distance(unittest.TestCase):
             "along_speed is 0; allowed: finite numbers above 0": dict(sources=1, along_speed=0),
             "along_speed is 2 and across_speed is 1 but directions is not set": dict(
                 sources=1, along_speed=2),
-            "directions is infinite in row 0": dict(
+            "directions is infinite at point 0": dict(
                 sources=1, along_speed=2, directions=np.full((42, 3), np.inf)),
             "method is Heat; allowed: Eikonal or Automatic together with along_speed": dict(
                 sources=1, method="Heat", across_speed=2.0),

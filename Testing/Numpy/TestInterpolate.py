@@ -147,6 +147,45 @@ class Bounds(unittest.TestCase):
         self.assertEqual((kept.values.min(), kept.values.max()), (0.0, 1.0))
 
 
+class Boundary(unittest.TestCase):
+    def test_a_planar_wave_has_its_velocity_up_to_the_boundary(self):
+        x, y = (a.ravel() for a in np.meshgrid(np.linspace(0.0, 60.0, 41), np.linspace(0.0, 60.0, 41)))
+        corner = np.arange(41 * 41).reshape(41, 41)[:-1, :-1].ravel()
+        plane = sd.Surface(np.c_[x, y, 0.0 * x], np.vstack([np.c_[corner, corner + 1, corner + 42],
+                                                            np.c_[corner, corner + 42, corner + 41]]))
+        random = np.random.default_rng(0)
+        places = np.c_[random.uniform(0.0, 60.0, (60, 2)), np.zeros(60)]
+        times = places[:, 0] / 0.6 + random.normal(size=60)
+        near = np.minimum(np.minimum(x, 60.0 - x), np.minimum(y, 60.0 - y)) < 2.0
+        speeds = {}
+        for boundary in (None, "Natural"):
+            result, found = interpolate(plane, times, places,
+                                        **({"boundary": boundary} if boundary else {}))
+            self.assertEqual(found, [])
+            speed = sd.conduction_velocity(plane, result.values, smoothing_fwhm=8.0)[1]
+            speeds[boundary] = speed[near].mean()
+        self.assertAlmostEqual(speeds[None], 0.6, delta=0.012)
+        self.assertGreater(speeds["Natural"], 0.7)
+
+    def test_automatic_is_natural_where_free_is_excluded(self):
+        half = sd.Surface(BALL.points, BALL.triangles[BALL.points[BALL.triangles, 2].min(axis=1) > 0.0])
+        known = np.where(np.arange(N) % 40 == 0, field(BALL.points), np.nan)
+        for options in ({"intrinsic_delaunay": True}, {"along_diffusivity": 2.0, "across_diffusivity": 2.0}):
+            found, natural = (interpolate(half, known, exact=True, boundary=boundary, **options)[0].values
+                              for boundary in ("Automatic", "Natural"))
+            np.testing.assert_array_equal(found, natural)
+
+    def test_open_slopes_have_infinite_errors_and_one_line_says_so(self):
+        strip = sd.Surface([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]],
+                           [[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]])
+        result, found = interpolate(strip, [1.0, np.nan, 5.0] + [np.nan] * 3, exact=True, noise_level=1.0,
+                                    compute_error=True)
+        np.testing.assert_allclose(result.values, [1.0, 3.0, 5.0] * 2, atol=1e-4)
+        np.testing.assert_array_equal(np.isinf(result.error), [False] * 3 + [True] * 3)
+        self.assertIn("the values leave slopes open with boundary Free: the flattest result is taken, and "
+                      "standard errors are infinite where slopes are open", found)
+
+
 class BadValues(unittest.TestCase):
     def test_no_value_is_an_error(self):
         for message, arguments in (

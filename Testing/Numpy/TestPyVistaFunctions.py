@@ -556,6 +556,10 @@ class Meshes(unittest.TestCase):
         quads.cell_data["vtkGhostType"] = np.where(np.arange(48) < 24, 0, 32).astype(np.uint8)
         hidden = heat(quads, "f", fwhm=0.2)
         np.testing.assert_array_equal(hidden["fDiffused"][-9:], quads["f"][-9:])
+        of_points = quads.copy()
+        of_points.point_data["vtkGhostType"] = np.where(np.arange(63) < 36, 0, 2).astype(np.uint8)
+        of_points.cell_data.remove("vtkGhostType")
+        np.testing.assert_array_equal(heat(of_points, "f", fwhm=0.2)["fDiffused"], hidden["fDiffused"])
 
     @unittest.skipUnless(hasattr(pyvista, "register_dataset_accessor"), "needs PyVista 0.48")
     def test_functions_are_methods_of_meshes(self):

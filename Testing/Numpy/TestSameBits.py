@@ -3,6 +3,7 @@
 """The functions on arrays give the bits of the VTK filters, which run in another Python:
 SURFACEDIFFUSION_VTK_PYTHON, with the package for VTK in SURFACEDIFFUSION_VTK_PATH."""
 
+import inspect
 import json
 import os
 import pathlib
@@ -13,8 +14,10 @@ import unittest
 import warnings
 
 import numpy as np
+import pyvista
 
 import surfacediffusion as sd
+import surfacediffusion.pyvista as of_meshes
 from filter_classes import CLASSES
 from surfacediffusion._settings import snake_case
 
@@ -28,24 +31,60 @@ INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "h
          "rates": 4, "fidelity": 5, "seeds": 6, "terms": 7, "marked": 0, "speed": 8}
 
 
+#: The arguments of the functions for PyVista meshes that have other names.
+OF_MESHES = {"values": "array", "vectors": "array", "directions": "direction", "marked": "sources"}
+
+#: The functions without a filter of their own, and what holds them.
+WITHOUT_FILTER = {
+    **dict.fromkeys(("gradient", "divergence", "curl", "laplacian", "conduction_velocity"),
+                    "derivatives() with a quantity"),
+    **dict.fromkeys(("nearest_sources", "distances"), "the run of distance()"),
+    **dict.fromkeys(("estimate_fwhm", "smooth_to_fwhm", "surrogates", "spectrum"),
+                    "statistics of arrays, which no other door has"),
+    **dict.fromkeys(("estimate_fwhm_img", "smooth_img"), "functions above, for images of nilearn"),
+    **dict.fromkeys(("mass_matrix", "stiffness_matrix", "gradient_matrix", "eigenmodes", "scale_filter"),
+                    "matrices of Core, in coordinates"),
+    **dict.fromkeys(("refine", "sphere", "on_faces", "on_points", "get_number_of_threads",
+                     "set_number_of_threads"), "no computation on data"),
+}
+
+
 def rough_sphere():
-    """A sphere with noise, a hole, and quadrilaterals beside triangles."""
+    """A sphere with noise and a hole of polygons of three to six corners, some of which are not convex or
+    turned; a second part, open and of quadrilaterals; and points of no face between."""
     random = np.random.default_rng(1)
-    sphere = sd.sphere(5)
-    points = sphere.points * random.normal(1.0, 0.004, size=(sphere.n_points, 1)) * [1.0, 1.2, 0.8]
+    sphere = sd.sphere(4)
+    points = sphere.points * random.normal(1.0, 0.006, size=(sphere.n_points, 1)) * [1.0, 1.2, 0.8]
     faces = sphere.triangles[sphere.points[sphere.triangles].mean(axis=1)[:, 2] < 0.9].tolist()
-    # Pairs of triangles that share an edge become quadrilaterals.
-    quads, merged = [], set()
-    edges = {}
-    for number, (a, b, c) in enumerate(faces):
-        for start, end, opposite in ((a, b, c), (b, c, a), (c, a, b)):
-            twin = edges.get((end, start))
-            if twin and number % 5 == 0 and not merged & {number, twin[0]}:
-                merged |= {number, twin[0]}
-                quads.append([start, twin[1], end, opposite])
-            edges[start, end] = (number, opposite)
-    quads += [face for number, face in enumerate(faces) if number not in merged]
-    return points, quads
+    of_edge = {edge: number for number, face in enumerate(faces) for edge in zip(face, face[1:] + face[:1])}
+    merged = set()
+    for number in range(0, len(faces), 7):
+        polygon = faces[number]
+        for _ in range(number // 7 % 4 if number not in merged else 0):
+            for i, (start, end) in enumerate(zip(polygon, polygon[1:] + polygon[:1])):
+                twin = of_edge.get((end, start), 0)
+                added = {*faces[twin]} - {*polygon}
+                if twin % 7 and twin not in merged and len(added) == 1:
+                    polygon.insert(i + 1, *added)
+                    merged.add(twin)
+                    break
+    faces = [face for number, face in enumerate(faces) if number not in merged]
+    x, y = np.divmod(np.arange(30), 6)
+    patch = np.column_stack([2.0 + 0.1 * x, 0.1 * y, 0.02 * random.normal(size=30)])
+    faces = [face[::-1] if number % 97 == 9 else face for number, face in enumerate(faces)]
+    corner = len(points) + np.flatnonzero((x < 4) & (y < 5))
+    faces += np.stack([corner, corner + 6, corner + 7, corner + 1], axis=1).tolist()
+    return np.vstack([points, patch]), faces
+
+
+def keywords_of(function, properties):
+    """The keywords of a function of arrays."""
+    keywords = {snake_case(name): value for name, value in properties.items()}
+    if function == "random_field":
+        keywords["n"] = keywords.pop("number_of_fields", 1)
+        covariance = keywords.pop("covariance", "")
+        keywords.update({"nu": int(covariance[-1])} if covariance else {})
+    return keywords
 
 
 class SameBits(unittest.TestCase):
@@ -70,7 +109,16 @@ class SameBits(unittest.TestCase):
         used = np.zeros(len(x), np.uint8)
         some = np.where(np.arange(len(x)) % 300 == 9, np.arange(len(x)), 0)
         used[np.concatenate([np.asarray(face) for face in self.faces])] = 1
+        some_fixed = (x < -0.8).astype(np.uint8)
+        weighted = {"mask": self.mask, "fixed": some_fixed, "directions": self.around,
+                    "fidelity": 1.0 + self.points[:, 2] ** 2}
         cases = [
+            *((function, {data: self.columns, **weighted},
+               {"AcrossDiffusivity": 0.3, "FidelityWeight": 1.5, "NumberOfTimeSteps": 2, **properties})
+              for function, data, properties in (
+                  ("heat", "values", {"TimeStep": 1.0}), ("intrinsic_tv", "values", {}),
+                  ("tensor_diffusion", "values", {"MaskMode": "Exclude"}), ("harmonic_map", "vectors", {}),
+                  ("mumford_shah", "values", {"AutomaticThreshold": False, "EdgeThreshold": 1.0}))),
             ("heat", {"values": self.values}, {"FWHM": 0.2}),
             ("heat", {"values": self.columns.astype(np.float32)}, {"FWHM": 0.1}),
             ("heat", {"values": colours}, {"TimeStep": 2.0, "TimeIntegrator": "FirstOrder"}),
@@ -87,6 +135,8 @@ class SameBits(unittest.TestCase):
             ("heat", {"values": self.values}, {"IntrinsicDelaunay": True, "TimeStep": 1.0}),
             ("heat", {"values": self.values, "fidelity": 1.0 + self.points[:, 2] ** 2},
              {"FidelityWeight": 0.5, "TimeStep": 1.0}),
+            ("heat", {"values": self.values, **{name: array * 1.0 for name, array in weighted.items()}},
+             {"TimeStep": 1.0, "FidelityWeight": 1.0, "RefineTo": 0.06}),
             ("intrinsic_tv", {"values": self.values}, {}),
             ("intrinsic_tv", {"values": colours, "mask": self.mask}, {"Mode": "SteadyState"}),
             ("intrinsic_tv", {"values": self.values}, {"Mode": "SteadyState", "BlurFWHM": 0.2}),
@@ -121,7 +171,8 @@ class SameBits(unittest.TestCase):
              {"NumberOfRegions": 3, "AutomaticFidelity": False, "FidelityWeight": 2.0}),
             ("segment", {"terms": self.columns, "seeds": np.where(self.mask, 2, 0)},
              {"NumberOfRegions": 3, "StopTolerance": 0.01}),
-            ("interpolate", {"values": nan}, {"ComputeError": True}),
+            ("segment", {"terms": self.columns[:, :2], "seeds": np.where(self.mask, 2.0, 0.0)}, {"RefineTo": 0.06}),
+            ("interpolate", {"values": nan, "mask": some_fixed}, {"ComputeError": True}),
             ("interpolate", {"values": np.where(np.arange(len(nan)) % 40 == 0, nan, np.nan),
                              "fidelity": 1.0 + self.points[:, 2] ** 2},
              {"Exact": True, "CorrelationLength": 2.0}),
@@ -134,6 +185,8 @@ class SameBits(unittest.TestCase):
             ("denoise_mesh", {"fixed": self.mask}, {}),
             ("denoise_mesh", {}, {"NoiseLevel": 0.01, "SurfaceType": "CAD"}),
             ("turing_texture", {}, {"NumberOfTimeSteps": 30, "RandomSeed": 4, "ColorOutput": True}),
+            ("turing_texture", {"initial": np.abs(self.columns[:, :2]), "mask": self.mask, "fixed": some_fixed},
+             {"NumberOfTimeSteps": 5}),
             ("turing_texture", {}, {"NumberOfTimeSteps": 20, "Kinetics": "GrayScott",
                                     "TimeIntegrator": "FirstOrder"}),
             ("turing_texture", {"rates": self.rates, "directions": self.around},
@@ -151,6 +204,7 @@ class SameBits(unittest.TestCase):
             ("random_field", {}, {"Covariance": "MaternNu3", "Range": 0.8, "Normalize": False}),
             ("distance", {"marked": (self.values > 1.3) * used}, {"Method": "Heat"}),
             ("distance", {"marked": (self.values > 1.3) * used * np.arange(len(x))}, {}),
+            ("distance", {"marked": (self.values > 1.3) * used * 1.0}, {"RefineTo": 0.06}),
             ("distance", {"marked": some, "mask": self.mask}, {"Method": "Exact"}),
             ("distance", {"marked": some, "mask": self.mask}, {"Method": "Eikonal"}),
             ("distance", {"marked": some, "speed": 1.0 + self.points[:, 2] ** 2}, {}),
@@ -169,6 +223,7 @@ class SameBits(unittest.TestCase):
             ("relief", {"values": x, "mask": (self.of_faces[:, 0] > 1.0).astype(np.uint8)},
              {"Height": 0.1, "Overhang": 30.0}),
         ]
+        self.assert_rows_of_all_arguments(cases)
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             listed = []
@@ -184,8 +239,41 @@ class SameBits(unittest.TestCase):
             subprocess.run([VTK_PYTHON, script, folder], env=environment, check=True)
             for number, (function, arrays, properties) in enumerate(cases):
                 with self.subTest(number=number, function=function, properties=properties):
-                    with np.load(folder / f"result{number}.npz") as expected:
-                        self.compare(function, arrays, properties, dict(expected))
+                    with np.load(folder / f"result{number}.npz") as found:
+                        expected = dict(found)
+                    self.compare_meshes(function, arrays, properties, expected)
+                    for name in ("polygons", "vtkOriginalCellIds"):
+                        expected.pop(name, None)
+                    self.compare(function, arrays, properties, expected)
+
+    def assert_rows_of_all_arguments(self, cases):
+        """Every function has rows, and each array that it takes is given in one of them."""
+        of_filters = {name.replace("_steps", "") for name in sd.__all__
+                      if inspect.isfunction(getattr(sd, name)) and name not in WITHOUT_FILTER}
+        self.assertEqual(of_filters, {function for function, _, _ in cases})
+        for function in of_filters:
+            taken = set(inspect.signature(getattr(sd, function)).parameters) & set(INDEX)
+            given = set().union(*(arrays for name, arrays, _ in cases if name == function))
+            with self.subTest(function=function):
+                self.assertEqual(taken - given, set())
+
+    def compare_meshes(self, function, arrays, properties, expected):
+        """The arrays of PyVista meshes have the names and bits of those of the filter."""
+        mesh = pyvista.PolyData(self.points, np.concatenate([[len(face), *face] for face in self.faces]))
+        for name, array in arrays.items():
+            (mesh.cell_data if len(array) == len(self.faces) else mesh.point_data)[name] = array
+        given = {OF_MESHES.get(name, name): name for name in arrays}
+        given.update(keywords_of(function, properties))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = getattr(of_meshes, function)(mesh, **given)
+        for name, array in expected.items():
+            if name == "points":
+                np.testing.assert_array_equal(array, found.points)
+            elif name == "polygons":
+                np.testing.assert_array_equal(array, found.faces)
+            elif not name.startswith("history"):
+                np.testing.assert_array_equal(array, found[name], err_msg=name)
 
     def compare(self, function, arrays, properties, expected):
         if function == "distance":
@@ -194,7 +282,7 @@ class SameBits(unittest.TestCase):
         if function == "random_field":
             self.compare_random_field(arrays, properties, expected)
             return
-        keywords = {snake_case(name): value for name, value in properties.items()}
+        keywords = keywords_of(function, properties)
         if function in ("heat", "intrinsic_tv", "tensor_diffusion"):
             result = getattr(sd, f"{function}_steps")(self.surface, **arrays, **keywords).last()
         else:
@@ -226,7 +314,7 @@ class SameBits(unittest.TestCase):
                       "tensor_diffusion": {"CoherenceEnhancing": "Coherent",
                                            "EdgeEnhancing": "EdgeEnhanced"}.get(
                                                properties.get("Model"), "Beltrami")}[function]
-            base = next(iter(arrays), "Normals")
+            base = next((name for name in ("values", "vectors", "terms") if name in arrays), "Normals")
             found = {base + suffix: result.values}
         if function == "segment":
             found = self.regions(result, arrays)
@@ -258,7 +346,7 @@ class SameBits(unittest.TestCase):
     def compare_distance(self, arrays, properties, expected):
         rows = np.flatnonzero(arrays["marked"])
         given = {key: array for key, array in arrays.items() if key != "marked"}
-        given.update({snake_case(name): value for name, value in properties.items()})
+        given.update(keywords_of("distance", properties))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # sources outside do not count
             found = sd.nearest_sources(self.surface, rows, **given)
@@ -269,11 +357,7 @@ class SameBits(unittest.TestCase):
             expected["NearestSource"], np.where(found.source < 0, 0, arrays["marked"][rows][found.source]))
 
     def compare_random_field(self, arrays, properties, expected):
-        width = {"range": properties["Range"], "nu": int(properties["Covariance"][-1])} \
-            if "Range" in properties else {"fwhm": properties["FWHM"]}
-        found = sd.random_field(
-            self.surface, properties.get("NumberOfFields", 1), seed=properties.get("RandomSeed", 0),
-            normalize=properties.get("Normalize", True), **width, **arrays)
+        found = sd.random_field(self.surface, **keywords_of("random_field", properties), **arrays)
         given = expected["RandomField"]
         np.testing.assert_array_equal(given.reshape(len(given), -1), found)
 

@@ -13,7 +13,7 @@ import sys
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+from vtkmodules.vtkCommonCore import vtkIdList, vtkIdTypeArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPolyData
 
 import vtkSurfaceDiffusion
@@ -56,7 +56,9 @@ def run(name, properties, indices, arrays):
     algorithm.SetInputData(polydata)
     algorithm.Update()
     output = algorithm.GetOutputDataObject(0)
-    results = {"points": vtk_to_numpy(output.GetPoints().GetData())}
+    padded = vtkIdTypeArray()
+    output.GetPolys().ExportLegacyFormat(padded)
+    results = {"points": vtk_to_numpy(output.GetPoints().GetData()), "polygons": vtk_to_numpy(padded)}
     for data in (output.GetPointData(), output.GetCellData()):
         for i in range(data.GetNumberOfArrays()):
             if data.GetArrayName(i) not in indices:

@@ -394,6 +394,16 @@ def run_pieces():
             run(name, producer(partitioned(split(many, 3))), "pieces %s %s" % (place, array),
                 InputArray=[place, array])
     run("HarmonicMapFilter", producer(partitioned(split(sphere, 3))), "pieces moved", MoveVertices=1)
+    masked = partitioned(split(sphere, 3))
+    for number, kind in enumerate((np.uint8, np.int32, np.float64)):
+        data = masked.GetPartition(number)
+        flags = np.zeros(data.GetNumberOfPoints(), dtype=kind)
+        flags[:5] = 256 if number == 1 else 1
+        mask = numpy_to_vtk(flags, deep=True)
+        mask.SetName("of any type")
+        data.GetPointData().AddArray(mask)
+    run("FVMHeatFilter", producer(masked), "pieces masked", InputArray=["POINTS", "f"],
+        MaskArray=["POINTS", "of any type"])
     run("FVMHeatFilter", producer(partitioned(split(typed_data(np.uint8), 2))), "pieces colors",
         InputArray=["POINTS", "rgba"], ResultArrayName="f")
 

@@ -108,7 +108,7 @@ DEFAULTS = {
     "vtkSurfaceInterpolationFilter": {
         **MODEL, "CorrelationLength": 0.0, "Exact": False, "AutomaticSmoothing": True,
         "NoiseLevel": 0.0, "Smoothing": 1.0, "KeepRange": False, "ComputeError": False,
-        "PointValueArray": "", "PointWeightArray": "", "Boundary": "Natural",
+        "PointValueArray": "", "PointWeightArray": "", "Boundary": "Automatic",
         "MaximumDistance": 0.0, "AlongDiffusivity": 1.0,
         "AcrossDiffusivity": 1.0, "ResultOnCells": True},
     "vtkSurfaceDenoisingFilter": {
@@ -153,7 +153,7 @@ WORDS = {
     "Levels": ("Smooth", "Two"),
     "Method": ("PrincipalCurvature", "CurvatureAligned", "Smooth", "Hints"),
     "vtkSurfaceDistanceFilter Method": ("Heat", "Eikonal", "Exact", "Automatic"),
-    "PrincipalDirection": ("Minimum", "Maximum"), "Boundary": ("Natural", "Free"),
+    "PrincipalDirection": ("Minimum", "Maximum"), "Boundary": ("Natural", "Free", "Automatic"),
 }
 
 

@@ -237,7 +237,7 @@ inline List OfInterpolation()
     RANDOM_PROPERTY(F, CorrelationLength, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, KeepRange, dice.Flip(4)),
     RANDOM_PROPERTY(F, ComputeError, dice.Flip()),
-    RANDOM_PROPERTY(F, Boundary, Choice(dice, 2)),
+    RANDOM_PROPERTY(F, Boundary, Choice(dice, 3)),
     RANDOM_PROPERTY(F, MaximumDistance, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
     RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),

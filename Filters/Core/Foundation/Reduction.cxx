@@ -2,34 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Foundation/Reduction.h"
 
+#include "Core/Foundation/Bisection.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 
 namespace SurfaceDiffusion
 {
 
 namespace
 {
-
-/// Integers in the order of the doubles.
-std::uint64_t OrderOf(double x)
-{
-  constexpr std::uint64_t sign = std::uint64_t(1) << 63;
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &x, sizeof(bits));
-  return (bits & sign) != 0 ? ~bits : bits | sign;
-}
-
-double WithOrder(std::uint64_t order)
-{
-  constexpr std::uint64_t sign = std::uint64_t(1) << 63;
-  const std::uint64_t bits = (order & sign) != 0 ? order & ~sign : ~order;
-  double x = 0.0;
-  std::memcpy(&x, &bits, sizeof(x));
-  return x;
-}
 
 /// By bisection: no process needs the values of the others.
 double DistributedQuantile(
@@ -46,15 +28,8 @@ double DistributedQuantile(
     return 0.0;
   }
   const auto rank = static_cast<double>(std::lround(fraction * (all - 1.0)));
-  std::uint64_t low = 0;
-  std::uint64_t high = ~low;
-  while (low < high)
-  {
-    const std::uint64_t middle = low + (high - low) / 2;
-    const bool reached = count([&](double x) { return OrderOf(x) <= middle; }) > rank;
-    (reached ? high : low) = reached ? middle : middle + 1;
-  }
-  return WithOrder(low);
+  return SmallestReached(
+    [&](double bound) { return count([bound](double x) { return x <= bound; }) > rank; });
 }
 
 } // namespace

@@ -36,14 +36,16 @@ struct AreaOfValue
 
 /// The extremes of finite values without the outliers, which have at most 1 % of the area: those
 /// that are farther from the shortest interval with 99 % of it than this is long. With no such
-/// interval of positive length all values count. Reorders the values.
-ValueBounds BoundsOfMost(std::vector<AreaOfValue>& values);
+/// interval of positive length all values count. all: their extremes, over the processes that have
+/// the values together. Reorders the values.
+ValueBounds BoundsOfMost(std::vector<AreaOfValue>& values, const ValueBounds& all,
+  const Reduction& processes = Reduction::Serial());
 
-/// The largest width over the columns of RobustBounds() of the values at vertices that are not
-/// missing. Over several processes the widest of their bounds count. 0 without values.
-double RobustRange(const Values& values, const Flags& missing, const Reduction& reduction);
+/// The extremes of those of all processes.
+ValueBounds OfAllProcesses(const ValueBounds& here, const Reduction& processes);
 
-/// The upper median, 0 of none. Takes linear time, and reorders the values.
-double Median(std::vector<double>& values);
+/// The upper median of the values of all processes, 0 of none. In one process it takes linear time,
+/// and reorders the values.
+double Median(std::vector<double>& values, const Reduction& processes = Reduction::Serial());
 
 } // namespace SurfaceDiffusion

@@ -232,6 +232,32 @@ void EikonalDistance::AppendParts(const SourcePiece& piece, std::vector<SourcePi
   }
   constexpr double roundOff = 1e-12;
   const std::vector<Part>& parts = this->Parts[static_cast<std::size_t>(piece.Triangle)];
+  if (parts.empty()) // they have no area: the nearest corner that others have
+  {
+    Index nearest = -1; // of Fine
+    double largest = 0.0;
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const Index v = this->FineVertices[static_cast<std::size_t>(
+        this->Mesh->TriangleVertices()(piece.Triangle, static_cast<Eigen::Index>(a)))];
+      if (v >= 0 && piece.From[a] > largest)
+      {
+        nearest = this->Fine->VertexCorners()[static_cast<std::size_t>(
+          this->Fine->VertexCornersBegin()[static_cast<std::size_t>(v)])];
+        largest = piece.From[a];
+      }
+    }
+    if (nearest >= 0)
+    {
+      SourcePiece corner = piece;
+      corner.Triangle = nearest / 3;
+      corner.From = { 0.0, 0.0, 0.0 };
+      corner.From[static_cast<std::size_t>(nearest % 3)] = 1.0;
+      corner.To = corner.From;
+      pieces.push_back(corner);
+    }
+    return;
+  }
   const Eigen::Map<const Eigen::Vector3d> from(piece.From.data());
   const Eigen::Map<const Eigen::Vector3d> to(piece.To.data());
   SourcePiece whole = piece; // where it is a point
@@ -264,7 +290,7 @@ void EikonalDistance::AppendParts(const SourcePiece& piece, std::vector<SourcePi
         end == 1.0 ? piece.ToPoint : -1, piece.Label });
     }
   }
-  if (piece.From == piece.To && !parts.empty())
+  if (piece.From == piece.To)
   {
     pieces.push_back(whole);
   }
@@ -312,8 +338,8 @@ GeodesicDistance::Arrival EikonalDistance::Find(const std::vector<SourcePiece>& 
   return arrival;
 }
 
-std::vector<std::pair<Index, double>> EikonalDistance::FindNear(
-  Index vertex, double cutoff, GeodesicDistance::Memory& memory) const
+std::vector<std::pair<Index, double>> EikonalDistance::FindNear(Index vertex, double cutoff,
+  GeodesicDistance::Memory& memory, const ProgressMonitor& progress) const
 {
   const Index source =
     this->FineVertices.empty() ? vertex : this->FineVertices[static_cast<std::size_t>(vertex)];
@@ -322,7 +348,7 @@ std::vector<std::pair<Index, double>> EikonalDistance::FindNear(
     return { { vertex, 0.0 } };
   }
   const std::vector<Index> touched =
-    this->Fronts->FindNear({ { source, 0.0, 0, 0, 0.0 } }, cutoff, {}, memory);
+    this->Fronts->FindNear({ { source, 0.0, 0, 0, 0.0 } }, cutoff, {}, memory, progress);
   std::vector<std::pair<Index, double>> near;
   for (const Index v : touched)
   {

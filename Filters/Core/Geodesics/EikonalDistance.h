@@ -32,8 +32,9 @@ public:
     const std::vector<double>& starts, const ProgressMonitor& progress) const;
 
   /// The times up to the cutoff from one vertex, as (vertex, time). memory: NumberOfVertices().
-  std::vector<std::pair<Index, double>> FindNear(
-    Index vertex, double cutoff, GeodesicDistance::Memory& memory) const;
+  /// Throws Aborted.
+  std::vector<std::pair<Index, double>> FindNear(Index vertex, double cutoff,
+    GeodesicDistance::Memory& memory, const ProgressMonitor& progress = ProgressMonitor()) const;
 
   /// Of the refined surface.
   Index NumberOfVertices() const { return this->Fine->NumberOfVertices(); }

@@ -4,6 +4,7 @@
 
 #include "Core/Geodesics/WindowFront.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -26,6 +27,36 @@ GeodesicDistance::Arrival ExactDistance::Find(
   }
   front.Run(progress);
   return { std::move(front.Times), std::move(front.Sources) };
+}
+
+std::vector<std::pair<Index, double>> ExactDistance::FindNear(const SourcePiece& source,
+  double cutoff, Memories& memories, const ProgressMonitor& progress) const
+{
+  std::shared_ptr<WindowFront> front;
+  {
+    const std::lock_guard<std::mutex> lock(memories.Mutex);
+    if (!memories.Free.empty())
+    {
+      front = std::move(memories.Free.back());
+      memories.Free.pop_back();
+    }
+  }
+  if (!front)
+  {
+    front = std::make_shared<WindowFront>(*this->Mesh, this->Frames, cutoff);
+  }
+  front->AddSource(source, 0);
+  front->Run(progress);
+  std::vector<std::pair<Index, double>> near;
+  for (const Index v : front->Reached)
+  {
+    near.emplace_back(v, front->Times[static_cast<std::size_t>(v)]);
+  }
+  std::sort(near.begin(), near.end());
+  front->Clear();
+  const std::lock_guard<std::mutex> lock(memories.Mutex);
+  memories.Free.push_back(std::move(front));
+  return near;
 }
 
 bool ExactDistance::TakesAtMostASecond(const TriangleMesh& mesh, double times)

@@ -6,10 +6,14 @@
 #include "Core/Geodesics/SourcePiece.h"
 
 #include <memory>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
 {
+
+class WindowFront;
 
 /// Exact distances from sources along a surface of flat triangles: the lengths of the shortest ways
 /// on it, to round-off, however coarse the surface and however long its triangles are. A shortest way
@@ -38,6 +42,19 @@ public:
   /// several are equal, it is one of them. Throws Aborted.
   GeodesicDistance::Arrival Find(const std::vector<SourcePiece>& sources, double cutoff,
     const ProgressMonitor& progress = ProgressMonitor()) const;
+
+  /// Fronts of one mesh and cutoff, one for each thread. Empty at first.
+  struct Memories
+  {
+    std::mutex Mutex;
+    std::vector<std::shared_ptr<WindowFront>> Free;
+  };
+
+  /// The distances up to a cutoff from one source, as (vertex, distance) in ascending order. Takes the
+  /// time of the vertices near it alone, but for the first calls with the same memories. Throws
+  /// Aborted.
+  std::vector<std::pair<Index, double>> FindNear(const SourcePiece& source, double cutoff,
+    Memories& memories, const ProgressMonitor& progress = ProgressMonitor()) const;
 
   /// Whether Find() over the whole mesh, or as often as `times` says, takes at most about a second: the
   /// mesh has up to some 100,000 triangles, fewer if very many of them share a vertex. Further sources

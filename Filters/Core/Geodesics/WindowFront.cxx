@@ -53,7 +53,10 @@ void WindowFront::Reach(Index vertex, double time, Index source, const Incoming&
   {
     return;
   }
-  this->NumberReached += this->Times[v] == Never;
+  if (this->Times[v] == Never)
+  {
+    this->Reached.push_back(vertex);
+  }
   this->Times[v] = time;
   this->Sources[v] = source;
   this->Ways[v] = incoming;
@@ -142,7 +145,7 @@ void WindowFront::Run(const ProgressMonitor& progress)
     if (++steps % 4096 == 0)
     {
       progress.Report(
-        static_cast<double>(this->NumberReached) / static_cast<double>(this->Times.size()));
+        static_cast<double>(this->Reached.size()) / static_cast<double>(this->Times.size()));
     }
     windows.swap(this->Pool[static_cast<std::size_t>(place)].Windows); // empty ones for these
     this->WaitingAt[static_cast<std::size_t>(edge)] = -1;
@@ -152,11 +155,33 @@ void WindowFront::Run(const ProgressMonitor& progress)
   }
 }
 
+void WindowFront::Clear()
+{
+  for (const Index vertex : this->Reached)
+  {
+    const auto v = static_cast<std::size_t>(vertex);
+    this->Times[v] = Never;
+    this->Sources[v] = -1;
+    this->Ways[v] = {};
+  }
+  for (const Index edge : this->Crossed)
+  {
+    this->TimesCrossed[static_cast<std::size_t>(edge)] = 0;
+  }
+  this->Reached.clear();
+  this->Crossed.clear();
+  this->Past.clear();
+}
+
 std::vector<Window>* WindowFront::PastAt(Index edge, double& roundOff)
 {
   constexpr unsigned char often = 4, most = 64;
   unsigned char& times = this->TimesCrossed[static_cast<std::size_t>(edge)];
   roundOff = 1e-14;
+  if (times == 0)
+  {
+    this->Crossed.push_back(edge);
+  }
   if (times < often)
   {
     ++times;

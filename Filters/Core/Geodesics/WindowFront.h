@@ -18,7 +18,7 @@
 namespace SurfaceDiffusion
 {
 
-/// The windows of one call of ExactDistance::Find().
+/// The windows from one set of sources, see ExactDistance.
 class WindowFront
 {
 public:
@@ -27,9 +27,12 @@ public:
   void AddSource(const SourcePiece& piece, Index source);
   /// Throws Aborted.
   void Run(const ProgressMonitor& progress);
+  /// As after construction, once Run() has ended, in the time that Run() took.
+  void Clear();
 
   std::vector<double> Times;
   std::vector<Index> Sources;
+  std::vector<Index> Reached; ///< vertices
 
 private:
   /// Windows that have come to an edge and not yet gone over its triangle.
@@ -57,7 +60,7 @@ private:
   void ReachFrom(Index corner, const Eigen::Vector2d& place, Index source);
   /// A way to a vertex, if it is shorter than those known.
   void Reach(Index vertex, double time, Index source, const Incoming& incoming);
-  /// Ways from a vertex in all directions, whatever way leads there.
+  /// Ways from a vertex in all directions, independent of the way that leads there.
   void LeaveEverywhere(Index vertex);
   void LeaveVertex(Index vertex);
   /// Ways from a corner of a triangle over the edge opposite, between angles from the edge to the
@@ -93,7 +96,7 @@ private:
   std::priority_queue<Event, std::vector<Event>, std::greater<>> Queue;
   std::vector<Index> Changed; ///< edges whose windows have changed
   WindowBuffers Buffers;
-  Index NumberReached = 0;
+  std::vector<Index> Crossed; ///< edges
 };
 
 } // namespace SurfaceDiffusion

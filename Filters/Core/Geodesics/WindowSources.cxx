@@ -80,7 +80,7 @@ void WindowFront::AddPoint(Index triangle, const std::array<double, 3>& at, Inde
     this->Reach(this->VertexAt(nearest), distance, source, {});
     return;
   }
-  // Ways from a point on an edge cannot be told apart there, and start behind it.
+  // Ways from a point on an edge have no order there, and start behind it.
   this->LeavePoint(triangle, at, source, -1);
   for (Index edge = 3 * triangle; edge < 3 * triangle + 3; ++edge)
   {

@@ -41,7 +41,7 @@ struct Curvatures
 ///
 /// Curvatures that the rounding of the coordinates may cause are 0.
 ///
-/// On surfaces with one side, such as a Moebius strip, no sign can be told: H is positive there.
+/// On surfaces with one side, such as a Moebius strip, H has no sign, and is positive.
 ///
 /// positions: per vertex, in LengthUnit(). operators: of the heat equation, of a mesh with the same
 /// vertices; not used if fwhm is 0. Those of an intrinsic Delaunay triangulation have no negative

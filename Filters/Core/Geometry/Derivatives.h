@@ -35,7 +35,7 @@ namespace SurfaceDiffusion
 /// functions and fields, at boundaries too, where the Laplacian is for quadratic ones. Inside, A times
 /// the Laplacian is -K u with the stiffness matrix K of cotan weights. An edge of three or more
 /// triangles is no boundary: what leaves one of them enters the others. On surfaces with one side,
-/// such as a Moebius strip, no sign of the curl can be told: it is positive there.
+/// such as a Moebius strip, the curl has no sign: it is positive there.
 class Derivatives
 {
 public:

@@ -11,8 +11,8 @@ namespace SurfaceDiffusion
 /// Directions of principal curvature per triangle, and how distinct they are.
 struct PrincipalDirections
 {
-  /// The minimum-curvature direction, of the smaller |kappa|, or (0, 0) if both are alike, as far as
-  /// the rounding of the coordinates tells. The maximum-curvature direction is perpendicular to it.
+  /// The minimum-curvature direction, of the smaller |kappa|, or (0, 0) if both are alike, up to
+  /// what the rounding of the coordinates may cause. The maximum-curvature direction is perpendicular to it.
   TangentVectors MinimumCurvature;
   /// ||kappa_1| - |kappa_2||, in 1/LengthUnit().
   Vector Difference;

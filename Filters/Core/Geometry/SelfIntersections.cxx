@@ -187,9 +187,11 @@ private:
     std::array<Vector3, 2> both{ across(this->Place(t, opposite)), Vector3::Zero() };
     const Index p = this->Faces(t, (opposite + 1) % 3);
     const Index q = this->Faces(t, (opposite + 2) % 3);
-    const Vector3 place = this->Places.row(p).transpose();
+    const Vector3 first = this->Places.row(p).transpose();
+    const Vector3 last = this->Places.row(q).transpose();
     Index neighbours = 0;
-    tree.Visit([&](const TriangleStars::Box& box) { return box.contains(place); },
+    tree.Visit([&](const TriangleStars::Box& box)
+      { return box.contains(first) && box.contains(last); }, // many have one of them
       [&](Index v)
       {
         const auto face = this->Faces.row(v);

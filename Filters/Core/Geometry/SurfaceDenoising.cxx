@@ -123,7 +123,7 @@ struct DenoisedPart
   double NoiseLevel = 0.0;
   double CorrelationLength = 0.0;
   SurfaceType Type = SurfaceType::Automatic;
-  bool IsCoarse = false; ///< its noise cannot be told from its shape
+  bool IsCoarse = false; ///< its noise cannot be distinguished from its shape
   double VolumeChange = 0.0; ///< over the volume
   Points Displacements;
 };

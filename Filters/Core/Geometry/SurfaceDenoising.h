@@ -31,8 +31,8 @@ struct DenoisingReport
   /// edges that were sharpened, or triangles so thin that their normals determine no place.
   Index FarVertices = 0;
   Index Parts = 0; ///< connected components
-  /// Those whose noise cannot be told from their shape, and that stay: with less than 200 vertices,
-  /// or with more than a quarter of the edges within a flat face. None if the level is given.
+  /// Those whose noise cannot be distinguished from their shape, and that stay: with less than 200
+  /// vertices, or more than a quarter of the edges within flat faces. None if the level is given.
   Index CoarseParts = 0;
   /// The largest relative change of the volume of a part that is closed.
   double VolumeChange = 0.0;

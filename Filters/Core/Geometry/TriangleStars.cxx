@@ -131,6 +131,12 @@ TriangleStars::TriangleStars(const Points& points, const Triangles& triangles)
     this->Stars.push_back(
       { std::move(members[s]), TriangleTree(points, part), std::move(arcs), arcBoxes });
   }
+  std::vector<Box> bounds;
+  for (const Star& star : this->Stars)
+  {
+    bounds.push_back(star.Boxes.Bounds());
+  }
+  this->Bounds = TriangleTree(bounds);
 }
 
 } // namespace SurfaceDiffusion

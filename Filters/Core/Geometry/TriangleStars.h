@@ -23,10 +23,12 @@ public:
   template <typename Enters, typename Visitor>
   void Visit(const Enters& enters, const Visitor& visit) const
   {
-    for (const Star& star : this->Stars)
-    {
-      star.Visit(star.Boxes, enters, visit);
-    }
+    this->Bounds.Visit(enters,
+      [&](Index s)
+      {
+        const Star& star = this->Stars[static_cast<std::size_t>(s)];
+        star.Visit(star.Boxes, enters, visit);
+      });
   }
 
   /// Call visit(u) for triangles u that may have a line in common with triangle t, and no edge, and
@@ -35,10 +37,10 @@ public:
   void VisitMeeting(Index t, const Enters& enters, const Visitor& visit) const
   {
     const Index own = this->StarOf[static_cast<std::size_t>(t)];
-    for (const Star& star : this->Stars)
+    const auto visitStar = [&](Index s)
     {
-      const bool isOwn = own > 0 && &star == &this->Stars[static_cast<std::size_t>(own)];
-      if (!isOwn)
+      const Star& star = this->Stars[static_cast<std::size_t>(s)];
+      if (s != own || s == 0)
       {
         star.Visit(star.Boxes, enters, visit);
       }
@@ -55,7 +57,8 @@ public:
         star.Visit(
           star.ArcBoxes, [&](const Box& other) { return box.intersects(other); }, visit);
       }
-    }
+    };
+    this->Bounds.Visit(enters, visitStar);
   }
 
 private:
@@ -78,6 +81,7 @@ private:
   };
 
   std::vector<Star> Stars; ///< the first: all triangles that are in no star
+  TriangleTree Bounds; ///< of the stars
   std::vector<Index> StarOf; ///< per triangle
   std::vector<Index> PlaceOf; ///< per triangle, among the members
 };

@@ -13,12 +13,9 @@ namespace
 
 constexpr Index LeafSize = 4;
 
-} // namespace
-
-TriangleTree::TriangleTree(const Points& points, const Triangles& triangles)
-  : Order(static_cast<std::size_t>(triangles.rows()))
+std::vector<TriangleTree::Box> BoxesOf(const Points& points, const Triangles& triangles)
 {
-  std::vector<Box> boxes(this->Order.size());
+  std::vector<TriangleTree::Box> boxes(static_cast<std::size_t>(triangles.rows()));
   for (std::size_t t = 0; t < boxes.size(); ++t)
   {
     for (int a = 0; a < 3; ++a)
@@ -26,6 +23,19 @@ TriangleTree::TriangleTree(const Points& points, const Triangles& triangles)
       boxes[t].extend(points.row(triangles(static_cast<Eigen::Index>(t), a)).transpose());
     }
   }
+  return boxes;
+}
+
+} // namespace
+
+TriangleTree::TriangleTree(const Points& points, const Triangles& triangles)
+  : TriangleTree(BoxesOf(points, triangles))
+{
+}
+
+TriangleTree::TriangleTree(const std::vector<Box>& boxes)
+  : Order(boxes.size())
+{
   std::iota(this->Order.begin(), this->Order.end(), 0);
   if (!boxes.empty())
   {

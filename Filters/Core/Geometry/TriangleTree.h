@@ -19,7 +19,16 @@ class TriangleTree
 public:
   using Box = Eigen::AlignedBox3d;
 
+  TriangleTree() = default;
   TriangleTree(const Points& points, const Triangles& triangles);
+  /// Of boxes in place of those around triangles.
+  explicit TriangleTree(const std::vector<Box>& boxes);
+
+  /// Around all; at the origin if there are none.
+  Box Bounds() const
+  {
+    return this->Nodes.empty() ? Box(Eigen::Vector3d::Zero()) : this->Nodes.front().Bounds;
+  }
 
   /// Call visit(t) for the triangles in boxes of interest, and a few beside them. enters(box) says
   /// whether a triangle within the box may be of interest, and may become stricter meanwhile.

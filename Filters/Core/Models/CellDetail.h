@@ -39,7 +39,7 @@ public:
   struct Data
   {
     Values Start; ///< d_0; zero at cells that take no part
-    Vector Factors; ///< w chi
+    Values Factors; ///< w chi, of each column or of all in one
     std::vector<char> Held; ///< cells whose d stays
     double Rounding = 0.0; ///< of the distance in L1, in units of the values
     bool HasRange = true; ///< false: values outside the range of f have a meaning

@@ -71,6 +71,7 @@ void CellDetail::Assemble(Eigen::Index first, Eigen::Index last, const Diffusion
     this->MeasureDistances(first, last, state);
   }
   this->Fixed.resize(this->Given.Held.size());
+  const Eigen::Index ofFactors = std::min(first, this->Given.Factors.cols() - 1);
   ForEach(this->Parallel, this->Cells.NumberOfCells(),
     [&](Index c)
     {
@@ -79,7 +80,7 @@ void CellDetail::Assemble(Eigen::Index first, Eigen::Index last, const Diffusion
         static_cast<char>(this->Given.Held[cell] != 0 || !this->Cells.Participates(c));
       const double distance = step.IsL1 ? this->Distances[c] : 1.0;
       const double area = this->Cells.CellAreas()[c];
-      this->Pull[c] = area * (dt * step.Fidelity * this->Given.Factors[c] / distance);
+      this->Pull[c] = area * (dt * step.Fidelity * this->Given.Factors(c, ofFactors) / distance);
       this->Balance[c] = inertia * area + this->Pull[c];
     });
   if (isSteady)

@@ -18,7 +18,8 @@ ComponentMeshes::ComponentMeshes(const TriangleMesh& mesh)
   Groups groups = GroupByKey(mesh.NumberOfTriangles(), mesh.NumberOfComponents(), SerialFor(),
     [&](Index t)
     {
-      const auto after = std::upper_bound(begin.begin(), begin.end(), mesh.TriangleVertices()(t, 0));
+      const auto after =
+        std::upper_bound(begin.begin(), begin.end(), mesh.TriangleVertices()(t, 0));
       return static_cast<Index>(after - begin.begin()) - 1;
     });
   this->Begin = std::move(groups.Begin);

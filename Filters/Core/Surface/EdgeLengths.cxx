@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Surface/EdgeLengths.h"
 
+#include "Core/Foundation/RobustRange.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,28 +17,16 @@ namespace
 
 constexpr double LongestCounted = 30.0; ///< in median edges
 
-/// The largest length that counts, by bisection for the upper median over the processes, unless the
-/// largest of all does.
+/// The largest length that counts; the median is sought only if the largest of all may not.
 double FindBound(
-  const Reduction& processes, const std::vector<double>& lengths, double number, double largest)
+  const Reduction& processes, std::vector<double> lengths, double number, double largest)
 {
-  const auto isHalfBelow = [&](double bound)
-  {
-    const auto here = std::count_if(
-      lengths.begin(), lengths.end(), [bound](double length) { return length <= bound; });
-    return processes.Sum(static_cast<double>(here)) > std::floor(0.5 * number);
-  };
-  double low = 0.0;
-  double high = largest / LongestCounted;
-  if (!isHalfBelow(high))
-  {
-    return largest;
-  }
-  for (double middle = 0.5 * high; middle > low && middle < high; middle = 0.5 * (low + high))
-  {
-    (isHalfBelow(middle) ? high : low) = middle;
-  }
-  return LongestCounted * high;
+  const double high = largest / LongestCounted;
+  const auto here =
+    std::count_if(lengths.begin(), lengths.end(), [high](double length) { return length <= high; });
+  return processes.Sum(static_cast<double>(here)) > std::floor(0.5 * number)
+    ? LongestCounted * Median(lengths, processes)
+    : largest;
 }
 
 /// Ends of the interface edges of other processes, ascending.
@@ -75,6 +65,27 @@ EdgeLengths MeasureEdgeLengths(const std::vector<double>& lengths, const Reducti
   }
   processes.Sum(sums, 2);
   return { sums[0], sums[1], number - sums[1] };
+}
+
+EdgeLengths MeasureEdgeLengths(const Points& points, const Triangles& triangles)
+{
+  std::vector<std::pair<Index, Index>> edges;
+  edges.reserve(static_cast<std::size_t>(triangles.size()));
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      edges.emplace_back(std::minmax({ triangles(t, a), triangles(t, (a + 1) % 3) }));
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<double> lengths;
+  for (const auto& [a, b] : edges)
+  {
+    lengths.push_back((points.row(a) - points.row(b)).norm());
+  }
+  return MeasureEdgeLengths(lengths);
 }
 
 EdgeLengths MeasureEdgeLengths(const TriangleMesh& mesh, const Reduction& processes)

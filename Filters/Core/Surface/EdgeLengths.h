@@ -22,6 +22,9 @@ struct EdgeLengths
 EdgeLengths MeasureEdgeLengths(
   const std::vector<double>& lengths, const Reduction& processes = Reduction::Serial());
 
+/// Of the distinct edges of triangles.
+EdgeLengths MeasureEdgeLengths(const Points& points, const Triangles& triangles);
+
 /// Of the distinct edges of a mesh with as many edges as pairs of vertices, in its LengthUnit(). On
 /// a piece of a surface each interface edge counts in the process that owns it.
 EdgeLengths MeasureEdgeLengths(const TriangleMesh& mesh, const Reduction& processes);

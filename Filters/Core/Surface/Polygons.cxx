@@ -3,8 +3,8 @@
 #include "Core/Surface/Polygons.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -14,6 +14,10 @@ namespace
 
 using Row2 = Eigen::RowVector2d;
 using Row3 = Eigen::RowVector3d;
+
+/// The fourth powers of these lengths are numbers.
+constexpr double Smallest = 1e-70;
+constexpr double Largest = 1e70;
 
 Row3 Cross(const Row3& u, const Row3& v)
 {
@@ -64,79 +68,116 @@ class EarCutting
 public:
   explicit EarCutting(const std::vector<Row3>& corners)
     : Flat(Flatten(corners))
-    , Left(corners.size())
+    , All(corners.size())
   {
-    std::iota(this->Left.begin(), this->Left.end(), 0);
+    const auto count = static_cast<int>(corners.size());
+    for (int i = 0; i < count; ++i)
+    {
+      this->All[i].Before = (i + count - 1) % count;
+      this->All[i].After = (i + 1) % count;
+    }
+    for (int i = 0; i < count; ++i)
+    {
+      this->Measure(i);
+    }
   }
 
   std::vector<Corners> Cut()
   {
     std::vector<Corners> triangles;
-    while (this->Left.size() > 3)
+    int first = 0; // of those that are left
+    for (auto left = this->All.size(); left > 3; --left)
     {
-      const std::size_t ear = this->FindBestEar();
-      if (ear == this->Left.size())
+      const int ear = this->FindBestEar(first);
+      if (ear < 0)
       {
         break;
       }
       triangles.push_back(this->TriangleAt(ear));
-      this->Left.erase(this->Left.begin() + static_cast<std::ptrdiff_t>(ear));
+      const auto [before, cut, after] = triangles.back();
+      first = ear == first ? after : first;
+      this->All[cut].IsLeft = false;
+      this->All[before].After = after;
+      this->All[after].Before = before;
+      this->Measure(before);
+      this->Measure(after);
     }
-    for (std::size_t i = 1; i + 1 < this->Left.size(); ++i)
+    for (int i = this->All[first].After; this->All[i].After != first; i = this->All[i].After)
     {
-      triangles.push_back({ this->Left[0], this->Left[i], this->Left[i + 1] });
+      triangles.push_back({ first, i, this->All[i].After });
     }
     return triangles;
   }
 
 private:
-  Corners TriangleAt(std::size_t i) const
+  struct Corner
   {
-    const std::size_t count = this->Left.size();
-    return { this->Left[(i + count - 1) % count], this->Left[i], this->Left[(i + 1) % count] };
+    int Before = 0, After = 0;
+    bool IsLeft = true;
+    double Quality = 0.0; ///< of the triangle at the corner
+    int Blocker = -1; ///< a corner that was found inside the triangle
+  };
+
+  Corners TriangleAt(int i) const { return { this->All[i].Before, i, this->All[i].After }; }
+
+  void Measure(int i)
+  {
+    const Corners ear = this->TriangleAt(i);
+    this->All[i].Quality = Quality(this->Flat[ear[0]], this->Flat[ear[1]], this->Flat[ear[2]]);
+    this->All[i].Blocker = -1;
   }
 
-  const Row2& At(int corner) const { return this->Flat[static_cast<std::size_t>(corner)]; }
-
-  bool IsEmpty(const Corners& ear) const
+  /// A corner inside a triangle; -1 if there is none.
+  int FindBlocker(const Corners& ear) const
   {
-    const Row2& a = this->At(ear[0]);
-    const Row2& b = this->At(ear[1]);
-    const Row2& c = this->At(ear[2]);
-    return std::none_of(this->Left.begin(), this->Left.end(),
-      [&](int corner)
-      {
-        const Row2& p = this->At(corner);
-        return std::find(ear.begin(), ear.end(), corner) == ear.end() && p != a && p != b &&
-          p != c && Turn(a, b, p) >= 0.0 && Turn(b, c, p) >= 0.0 && Turn(c, a, p) >= 0.0;
-      });
-  }
-
-  /// The place of the ear of the best shape; that of no corner if there is none.
-  std::size_t FindBestEar() const
-  {
-    std::size_t best = this->Left.size();
-    double bestQuality = 0.0;
-    for (std::size_t i = 0; i < this->Left.size(); ++i)
+    const Row2& a = this->Flat[ear[0]];
+    const Row2& b = this->Flat[ear[1]];
+    const Row2& c = this->Flat[ear[2]];
+    for (int i = this->All[ear[2]].After; i != ear[0]; i = this->All[i].After)
     {
-      const Corners ear = this->TriangleAt(i);
-      const double quality = Quality(this->At(ear[0]), this->At(ear[1]), this->At(ear[2]));
-      if (quality > bestQuality && this->IsEmpty(ear))
+      const Row2& p = this->Flat[i];
+      if (p != a && p != b && p != c && Turn(a, b, p) >= 0.0 && Turn(b, c, p) >= 0.0 &&
+        Turn(c, a, p) >= 0.0)
       {
-        best = i;
-        bestQuality = quality;
+        return i;
       }
     }
-    return best;
+    return -1;
+  }
+
+  /// The ear of the best shape; -1 if there is none.
+  int FindBestEar(int first)
+  {
+    for (;;)
+    {
+      int best = -1;
+      double bestQuality = 0.0;
+      int i = first;
+      do
+      {
+        const Corner& corner = this->All[i];
+        if (corner.Quality > bestQuality &&
+          (corner.Blocker < 0 || !this->All[corner.Blocker].IsLeft))
+        {
+          best = i;
+          bestQuality = corner.Quality;
+        }
+        i = corner.After;
+      } while (i != first);
+      const int blocker = best < 0 ? -1 : this->FindBlocker(this->TriangleAt(best));
+      if (blocker < 0)
+      {
+        return best;
+      }
+      this->All[best].Blocker = blocker;
+    }
   }
 
   const std::vector<Row2> Flat;
-  std::vector<int> Left;
+  std::vector<Corner> All;
 };
 
-} // namespace
-
-std::array<Corners, 2> CutQuad(const std::array<Eigen::RowVector3d, 4>& corners)
+std::vector<Corners> CutQuad(const std::vector<Row3>& corners)
 {
   const auto normal = [&](std::size_t a, std::size_t b, std::size_t c)
   { return Cross(corners[b] - corners[a], corners[c] - corners[a]); };
@@ -145,19 +186,35 @@ std::array<Corners, 2> CutQuad(const std::array<Eigen::RowVector3d, 4>& corners)
   const bool firstShorter = (corners[0] - corners[2]).norm() <= (corners[1] - corners[3]).norm();
   if (firstInside == secondInside ? firstShorter : firstInside)
   {
-    return { { { 0, 1, 2 }, { 0, 2, 3 } } };
+    return { { 0, 1, 2 }, { 0, 2, 3 } };
   }
-  return { { { 1, 2, 3 }, { 1, 3, 0 } } };
+  return { { 1, 2, 3 }, { 1, 3, 0 } };
 }
+
+} // namespace
 
 std::vector<Corners> CutPolygon(const std::vector<Eigen::RowVector3d>& corners)
 {
-  if (corners.size() == 4)
+  if (corners.size() < 3)
   {
-    const auto quad = CutQuad({ corners[0], corners[1], corners[2], corners[3] });
-    return { quad.begin(), quad.end() };
+    return {};
   }
-  return EarCutting(corners).Cut();
+  double extent = 0.0;
+  for (const Row3& corner : corners)
+  {
+    extent = std::max(extent, (corner - corners[0]).cwiseAbs().maxCoeff());
+  }
+  if (extent > 0.0 && (extent < Smallest || extent > Largest))
+  {
+    const double unit = std::ldexp(1.0, std::ilogb(extent));
+    std::vector<Row3> scaled;
+    for (const Row3& corner : corners)
+    {
+      scaled.push_back((corner - corners[0]) / unit);
+    }
+    return CutPolygon(scaled);
+  }
+  return corners.size() == 4 ? CutQuad(corners) : EarCutting(corners).Cut();
 }
 
 } // namespace SurfaceDiffusion

@@ -13,14 +13,10 @@ namespace SurfaceDiffusion
 /// Three of the corners of a polygon, by their place in it.
 using Corners = std::array<int, 3>;
 
-/// The two triangles of a quadrilateral, cut along the shorter diagonal that lies inside,
-/// regardless of the corner that comes first.
-std::array<Corners, 2> CutQuad(const std::array<Eigen::RowVector3d, 4>& corners);
-
-/// The triangles of a polygon of any number of corners, at least 3. Quadrilaterals are cut by
-/// CutQuad(), larger polygons by ear cutting in the plane of their mean normal, where the ear with
-/// the largest smallest angle is cut first. The rest of a polygon without an ear, which intersects
-/// itself, becomes a fan.
+/// The triangles of a polygon of any number of corners; none of less than 3. Quadrilaterals are cut
+/// along the shorter diagonal that lies inside, regardless of the corner that comes first, larger
+/// polygons by ear cutting in the plane of their mean normal, where the ear with the largest smallest
+/// angle is cut first. The rest of a polygon without an ear, which intersects itself, becomes a fan.
 std::vector<Corners> CutPolygon(const std::vector<Eigen::RowVector3d>& corners);
 
 } // namespace SurfaceDiffusion

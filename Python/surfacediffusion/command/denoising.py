@@ -113,7 +113,7 @@ def add_normals(commands):
     parser = commands.add(
         "normals", normals,
         "Regularise the normals of a surface by harmonic maps. With --move, denoise the "
-        "surface: its points are moved to fit these normals, and OUTPUT is a surface.",
+        "surface: its points are moved so that its triangles turn with them, and OUTPUT is a surface.",
         ["scan.ply clean.ply --move"], common.NEW)
     common.mesh(parser)
     common.output(parser, "three columns, or with --move a surface in the format of SURFACE")

@@ -71,8 +71,8 @@ def add_interpolate(commands):
     common.positive(parser, "--length", "L",
                     "the distance beyond which the map returns to the mean of the values, in the unit of "
                     "the coordinates (default: it continues smoothly)")
-    parser.add_argument("--free", action="store_true",
-                        help="continue slopes at the boundary of the surface, in place of becoming flat")
+    parser.add_argument("--flat", action="store_true",
+                        help="become flat at the boundary of the surface, in place of continuing slopes")
     parser.add_argument("--keep-range", action="store_true",
                         help="stay between the smallest and the largest value")
     common.positive(parser, "--within", "D",
@@ -98,7 +98,7 @@ def interpolate(arguments, report):
     with report.working("Interpolation") as progress:
         result = fit(
             solid(surface), values, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
-            correlation_length=arguments.length or 0.0, boundary="Free" if arguments.free else "Natural",
+            correlation_length=arguments.length or 0.0, boundary="Natural" if arguments.flat else "Automatic",
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
             compute_error=errors is not None, progress=progress, **given(smoothing=arguments.smoothing),
             **common.merging(arguments))

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from .. import Surface
+from .._refinement import mean_edge_length
 from ..files import FileError, read_data, read_surface
 from ..files.content import read_content
-from . import inputs
 from .report import number, number_text
 
 
@@ -54,15 +55,10 @@ def _surface_info(surface):
 
 
 def _measure(surface):
-    areas = inputs.vertex_areas(surface)
-    faces = inputs.triangles(surface)
-    edges = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]),
-                              axis=1), axis=0)
-    points = np.asarray(surface.points, dtype=float)
-    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
-    return {"format": surface.kind, "points": len(points), "faces": len(surface.faces),
-            "structure": surface.structure, "area": number(areas.sum()),
-            "mean_edge_length": number(lengths.mean())}
+    solver = Surface(surface.points, surface.faces)
+    return {"format": surface.kind, "points": solver.n_points, "faces": solver.n_faces,
+            "structure": surface.structure, "area": number(solver.area),
+            "mean_edge_length": number(mean_edge_length([solver._core]))}
 
 
 def _data_info(data):

@@ -411,35 +411,15 @@ def require_finite(values, data, part, columns):
 def vertex_areas(surface: SurfaceFile, excluded=None, given=None):
     """The areas of the barycentric control cells (n,): a third of those of the triangles. Triangles
     with an excluded corner take no part. given: the areas of whole cells in place of the true ones."""
-    faces = triangles(surface)
-    if excluded is not None:
-        faces = faces[~excluded[faces].any(axis=1)]
-    areas = np.bincount(faces.ravel(), np.repeat(_triangle_areas(surface, faces) / 3, 3),
-                        minlength=len(surface.points))
+    solver = Surface(surface.points, surface.faces)
+    areas = solver._triangle_areas(excluded)
     if given is not None:
-        whole = vertex_areas(surface)
+        whole = solver._triangle_areas()
         areas = np.divide(areas * given, whole, out=areas, where=whole > 0)
     return areas
 
 
 def face_areas(surface: SurfaceFile):
     """The areas of the faces (m,)."""
-    faces = triangles(surface)
-    areas = _triangle_areas(surface, faces)
-    counts = ([1] * len(faces) if isinstance(surface.faces, np.ndarray)
-              else [len(face) - 2 for face in surface.faces])
-    return np.bincount(np.repeat(np.arange(len(counts)), counts), areas, minlength=len(counts))
-
-
-def _triangle_areas(surface, faces):
-    points = np.asarray(surface.points, dtype=float)
-    a, b, c = (points[faces[:, i]] for i in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-
-
-def triangles(surface: SurfaceFile):
-    """The faces, with polygons cut into fans."""
-    if isinstance(surface.faces, np.ndarray):
-        return surface.faces.astype(np.int64, copy=False)
-    return np.array([(face[0], face[i], face[i + 1]) for face in surface.faces
-                     for i in range(1, len(face) - 1)], dtype=np.int64)
+    solver = Surface(surface.points, surface.faces)
+    return np.bincount(solver._core.faces(), solver._areas_of_triangles(), minlength=len(surface.faces))

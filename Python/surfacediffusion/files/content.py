@@ -35,7 +35,7 @@ EXTENSIONS = {
 # Files of FreeSurfer have names such as lh.thickness.fwhm10, whose ends say nothing of the format.
 _NAMED_FREELY = ("curv", "freesurfer")
 
-# What is written in single precision, whatever the input has
+# Formats that store single precision, also if the input is double
 _SINGLE = ("gifti", "cifti", "curv", "mgh", "nifti", "freesurfer", "stl")
 
 # CIFTI names say what the rows are: .dscalar.nii, .dtseries.nii, ...
@@ -97,8 +97,8 @@ def _unknown(path, data):
 
 
 def _stl_with_more(path, data):
-    """Some programs write more bytes after the triangles than STL has; only the name tells such files from
-    others."""
+    """Some programs write more bytes after the triangles than STL has; only by the name are such files
+    distinguished from others."""
     size = _size_of_stl(data)
     if not _plain_name(path).endswith(".stl") or not 84 < size < len(data) or b"\0" not in data[:84]:
         return None

@@ -16,10 +16,11 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
+from .._refinement import mean_edge_length
 from ._fields import (
-    BY_INDEX, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
+    BY_INDEX, FLAGS, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
 from ._pieces import Stitched, scatter_results, stitch_pieces
-from ._refinement import Refinement, mean_edge_length
+from ._refinement import Refinement
 from ._surfaces import (
     ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure, to_numpy)
 
@@ -73,6 +74,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     RESULT_NAME = ""
 
     HAS_POINT_INPUT = False
+    RULES = {1: "mask", 3: "mark", 5: "weight", 6: "mark"}  #: of refinement, by the index of an array
     DEFAULT_CHOICE: Choice | None = None
 
     def __init__(self) -> None:
@@ -201,11 +203,12 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return 1
 
     def _find_state(self, inputs: Any, parts: Parts) -> list[Any]:
-        """The contents of the surfaces, and when the filter and its second input were modified. (ParaView
-        copies the input for each time.)"""
+        """The contents of the surfaces and the surface that each is a piece of, and when the filter and its
+        second input were modified. (ParaView copies the input for each time.)"""
         digest = hashlib.sha1()
         for block in parts.blocks:
             data = block.input
+            digest.update(str(block.surface).encode())
             arrays = [data.GetPoints().GetData()] if data.GetPoints() else []
             for cells in (data.GetPolys(), data.GetStrips()):
                 arrays += [cells.GetOffsetsArray(), cells.GetConnectivityArray()]
@@ -341,7 +344,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         attributes: set[int] = {
             vtkDataSetAttributes.SCALARS, vtkDataSetAttributes.VECTORS, vtkDataSetAttributes.NORMALS}
         attributes |= {choice.attribute for choice in choices if choice.attribute is not None}
-        names = {choice.name for choice in choices if choice.name}
+        names: dict[str, bool] = {}
+        for index, choice in self.choices.items():
+            if choice.name:
+                names[choice.name] = names.get(choice.name, True) and index in FLAGS
         return stitch_pieces(pieces, self.own["SeamTolerance"], names, attributes)
 
     def complete_pieces(self, surface: Stitched) -> None:
@@ -354,12 +360,14 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
 
     def _refine(self, blocks: list[Block], refinement: Refinement, others: list[Block]) -> None:
         automatic = self.own["RefineTo"] == -1.0
-        length, reason = self.find_refinement(mean_edge_length(blocks, self.shapes) if automatic else 0.0)
+        length, reason = self.find_refinement(mean_edge_length(
+            [self.shapes.find(block).core for block in blocks]) if automatic else 0.0)
         limit = self.own["MaximumNumberOfTriangles"]
         if not length > 0.0:
             return
-        mask, weights = (self.choices[k].name if k in self.choices else None for k in (1, 5))
-        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others, mask, weights)
+        rules = {name: rule for k, rule in self.RULES.items()
+                 if k in self.choices and (name := self.choices[k].name) is not None}
+        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others, rules)
         if refinement.longest > 0.0:
             self._of_surfaces.append(
                 f"refinement stopped at edges of {refinement.longest:g}, longer than {length:g}, because "

@@ -19,6 +19,7 @@ from ._surfaces import BETWEEN, GIVEN_CELL, Block, SurfaceError, hidden_points, 
 #: The attribute of Fields that has the array of an index; 7 has terms of data in place of data.
 BY_INDEX = ("data", "mask", "direction", "fixed", "rates", "fidelity", "seeds", "data", "speeds",
             "start_times")
+FLAGS = (1, 3)  #: the indices of arrays of flags, whose type has no meaning
 POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
 ANY = 0  #: number of components
 _LINES = (3, 4)  #: types of cells: line, polyline
@@ -168,7 +169,8 @@ def find_disagreement(choices: dict[int, Choice], blocks: list[Block]) -> str:
             if not isinstance(found, vtkDataArray) or block.input.GetNumberOfPoints() == 0:
                 continue
             size = found.GetNumberOfComponents()
-            text = (f'"{found.GetName() or ""}" ({found.GetDataTypeAsString()}, {size} '
+            kind = "" if index in FLAGS else f"{found.GetDataTypeAsString()}, "
+            text = (f'"{found.GetName() or ""}" ({kind}{size} '
                     f'component{"" if size == 1 else "s"}, on {"cells" if on_cells else "points"})')
             first = known.setdefault((block.surface, index), text)
             if first != text:
@@ -229,8 +231,8 @@ def make_core(fields: Fields, block: Block) -> None:
             places.append(name)
     fields.core = _core.Fields(
         block.core, data, 0 if data is None else data_components(data), flags["mask"], flags["fixed"],
-        _as_directions(fields), _as_rates(fields, block), _as_numbers(fields.fidelity.values),
-        _as_seeds(fields), fields.data_are_terms, places)
+        _as_numbers(fields.direction.values), _as_numbers(fields.rates.values),
+        _as_numbers(fields.fidelity.values), _as_numbers(fields.seeds.values), fields.data_are_terms, places)
     fields.core.set_names(fields.name(), block.name)
     if fields.samples is not None:
         fields.core.set_samples(
@@ -267,39 +269,6 @@ def _as_numbers(array: Any) -> NDArray[np.float64] | None:
 
 def _as_flags(array: Any) -> NDArray[np.uint8] | None:
     return None if array is None else np.ascontiguousarray(to_numpy(array) != 0, dtype=np.uint8)
-
-
-def _as_directions(fields: Fields) -> NDArray[np.float64] | None:
-    vectors = _as_numbers(fields.direction.values)
-    if vectors is not None and np.isinf(vectors).any():
-        row = int(np.argmax(np.isinf(vectors).any(axis=1)))
-        raise SurfaceError(f'DirectionArray "{fields.name("direction")}" is infinite at tuple {row}; '
-                           "allowed: finite values and NaN")
-    return vectors
-
-
-def _as_rates(fields: Fields, block: Block) -> NDArray[np.float64] | None:
-    rates = _as_numbers(fields.rates.values)
-    if rates is not None:
-        used = rates[block.cells]
-        bad = ~(np.isfinite(used) & (used >= 0.0))
-        if bad.any():
-            row, column = divmod(int(np.argmax(bad)), used.shape[1])
-            raise SurfaceError(f"DiffusionRateArray is {used[row, column]:g} at cell {block.cells[row]}; "
-                               "allowed: finite numbers, 0 or more")
-    return rates
-
-
-def _as_seeds(fields: Fields) -> NDArray[np.int64] | None:
-    labels = _as_numbers(fields.seeds.values)
-    if labels is None:
-        return None
-    bad = ~((labels >= 0) & (labels == np.floor(labels)) & (labels < 2**31))
-    if bad.any():
-        row, place = int(np.argmax(bad)), "cell" if fields.seeds.on_cells else "point"
-        raise SurfaceError(f'SeedArray "{fields.name("seeds")}" is {labels[row]:g} at {place} {row}; '
-                           f"allowed: the labels 1 to NumberOfRegions, and 0 for {place}s that are free")
-    return labels.astype(np.int64)
 
 
 _POINT_SET = ("; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "

@@ -13,7 +13,6 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkDataSe
 from vtkmodules.vtkCommonExecutionModel import vtkDemandDrivenPipeline, vtkStreamingDemandDrivenPipeline
 
 from .. import _core
-from .._refinement import texture_length
 from ._algorithm import SurfaceFilter, list_settings, spell
 from ._fields import (
     CELLS, POINTS, POINTS_THEN_CELLS, Choice, Fields, join_sentences, read_samples, read_sources,
@@ -75,9 +74,9 @@ class RunFilter(SurfaceFilter):
                 self._runs.write(number, entry, values, source)
 
             results = read_outputs(self._runs.outputs(number), write, found, block, np.float64)
-            turned = self._runs.turned_faces(number, block.core)
-            if turned:
-                _turn_polygons(block.output, turned)
+            turned = self._runs.turned_triangles(number)
+            if turned.size:
+                _turn_polygons(block.output, sorted(set(block.cells[turned].tolist())))
             data = getattr(found, self.NAMED_AFTER).values if self.NAMED_AFTER else None
             replaced += write_outputs(results, found, data, block, self.own["ResultArrayName"])
         self.set_numbers(self._runs.numbers())
@@ -322,9 +321,7 @@ class Texture(ModelFilter):
         if self.own["RefineTo"] != -1.0:
             return ModelFilter.find_refinement(self, mean)
         size = self.settings.get("FeatureSize", 0.0)
-        if not 0.0 < size < float("inf"):
-            return 0.0, ""
-        length = texture_length(mean, size)
+        length = _core.edge_length_for_features(size, mean)
         return length, (f"FeatureSize is {size:g}, only {size / mean:g} mean edge lengths (to keep the "
                         "edges, set RefineTo to 0)" if length > 0.0 else "")
 
@@ -409,6 +406,7 @@ class DirectionField(RunFilter):
 
 class Distance(RunFilter):
     HAS_POINT_INPUT = True
+    RULES = {**RunFilter.RULES, 0: "mark"}
 
     def read_points(self, data: Any) -> tuple[Any, list[str]]:
         return read_sources(data)

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import (
-    VTK_DOUBLE, vtkDataArray, vtkIdTypeArray, vtkPoints, vtkTypeInt64Array, vtkUnsignedCharArray,
+    VTK_DOUBLE, vtkDataArray, vtkDoubleArray, vtkIdTypeArray, vtkPoints, vtkTypeInt64Array,
+    vtkUnsignedCharArray,
 )
 from vtkmodules.vtkCommonDataModel import vtkBoundingBox, vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
@@ -73,10 +74,10 @@ class Stitched:
 
 
 def stitch_pieces(
-    blocks: list[Block], tolerance: float, names: set[str], attributes: set[int]
+    blocks: list[Block], tolerance: float, names: dict[str, bool], attributes: set[int]
 ) -> list[Stitched]:
-    """Make the surfaces whose pieces are the blocks. names, attributes: of the arrays that are read; all
-    others are known by their names only."""
+    """Make the surfaces whose pieces are the blocks. names, attributes: of the arrays that are read, and
+    whether they have flags alone, whose type has no meaning; all others are known by their names only."""
     pieces: list[Piece] = []
     for block in blocks:
         first = pieces[-1].rows.stop if pieces else 0
@@ -195,8 +196,8 @@ def _flags(piece: Piece) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
 # Surfaces --------------------------------------------------------------------------------------
 
 
-def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.int64], names: set[str],
-            attributes: set[int]) -> Stitched:
+def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.int64],
+            names: dict[str, bool], attributes: set[int]) -> Stitched:
     rows = np.concatenate([np.arange(piece.rows.start, piece.rows.stop) for piece in pieces])
     sources = rows[owners[rows] == rows]
     sources = sources[np.argsort(numbers[sources], kind="stable")]
@@ -294,18 +295,21 @@ def _sort_cells(cells: Cells, ids: NDArray[np.int64]) -> NDArray[np.int64]:
 # Arrays ----------------------------------------------------------------------------------------
 
 
-def _merge(pieces: list[tuple[Any, int, int]], rows: NDArray[np.int64], names: set[str], attributes: set[int],
-           merged: Any) -> None:
-    """Add the arrays that are read and that all pieces have, with the same name, type and number of
-    components. pieces: of each the arrays, its first tuple and their number. rows: of the tuples of all
-    pieces."""
+def _merge(pieces: list[tuple[Any, int, int]], rows: NDArray[np.int64], names: dict[str, bool],
+           attributes: set[int], merged: Any) -> None:
+    """Add the arrays that are read and that all pieces have, with the same name, type (but of flags) and
+    number of components. pieces: of each the arrays, its first tuple and their number. rows: of the tuples
+    of all pieces."""
     lists = [list(_find_read(*piece, names, attributes)) for piece in pieces]
     for key, array in lists[0] if lists else []:
         arrays = [dict(found).get(key) for found in lists]
-        if any(other is None or other.GetDataType() != array.GetDataType()
+        is_of_flags = bool(names.get(key[0])) and isinstance(array, vtkDataArray)
+        if any(other is None or not is_of_flags and other.GetDataType() != array.GetDataType()
                or other.GetNumberOfComponents() != array.GetNumberOfComponents() for other in arrays):
             continue
         new = vtkTypeInt64Array() if isinstance(array, vtkIdTypeArray) else array.NewInstance()
+        if is_of_flags:
+            new = vtkDoubleArray()
         if isinstance(array, vtkDataArray):
             values = [to_numpy(other)[first:first + count]
                       for other, (_, first, count) in zip(arrays, pieces)]
@@ -324,7 +328,7 @@ def _merge(pieces: list[tuple[Any, int, int]], rows: NDArray[np.int64], names: s
 
 
 def _find_read(
-    arrays: Any, first: int, count: int, names: set[str], attributes: set[int]
+    arrays: Any, first: int, count: int, names: dict[str, bool], attributes: set[int]
 ) -> Iterator[tuple[tuple[str, int], Any]]:
     """The arrays that are read, by name and the number among those of this name."""
     active = [arrays.GetAbstractAttribute(kind) for kind in attributes]

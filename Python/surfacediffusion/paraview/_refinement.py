@@ -14,24 +14,9 @@ from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkDataArray, vtkIdTypeArray, vt
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
 from .. import _core
-from .._refinement import counted_lengths, interpolate_points, interpolate_weights
+from .._refinement import interpolate_points
 from ._results import copy_component_names, make_array
 from ._surfaces import BETWEEN, GIVEN_CELL, Block, Shapes, to_numpy
-
-
-def mean_edge_length(blocks: list[Block], shapes: Shapes) -> float:
-    """Return the mean length of the distinct edges of each block; 0 if there is none."""
-    lengths, counts = [0.0], [0]
-    for block in blocks:
-        shape = shapes.find(block)
-        triangles = shape.core.triangles()
-        if shape.total_edge_length is None:
-            points = to_numpy(block.input.GetPoints().GetData()).astype(np.float64)
-            found = counted_lengths(points, triangles)
-            shape.total_edge_length, shape.number_of_edges = float(found.sum()), len(found)
-        lengths.append(shape.total_edge_length)
-        counts.append(shape.number_of_edges)
-    return sum(lengths) / sum(counts) if sum(counts) else 0.0
 
 
 class Refinement:
@@ -45,11 +30,10 @@ class Refinement:
 
     def bisect(
         self, blocks: list[Block], length: float, limit: int, progress: Callable[[float], Any],
-        others: list[Block], mask: str | None, weights: str | None,
+        others: list[Block], rules: dict[str, str],
     ) -> None:
         """Bisect the edges that are longer, until a block would have more triangles than the limit. others:
-        blocks without polygons, which are pieces of surfaces, too. mask, weights: the names of
-        these arrays of points."""
+        blocks without polygons, which are pieces of surfaces, too. rules: by the names of arrays."""
         found = self._bisect_all(blocks, length, limit, progress)
         self.longest = max([refined["longest_edge"] for refined in found if refined["limit_reached"]],
                            default=0.0)
@@ -60,7 +44,7 @@ class Refinement:
             before = block.input
             self._before.append((block, before))
             if refined is not None and len(refined["parents"]):
-                block.input = _make_surface(before, refined, mask, weights)
+                block.input = _make_surface(before, refined, rules)
                 self.triangles += len(refined["triangles"])
                 block.output.ShallowCopy(block.input)
                 given = to_numpy(block.input.GetCellData().GetArray("vtkOriginalCellIds"))
@@ -93,14 +77,8 @@ class Refinement:
             block.output.ShallowCopy(before)
 
 
-def _make_surface(given: Any, refined: dict[str, Any], mask: str | None, weights: str | None) -> Any:
+def _make_surface(given: Any, refined: dict[str, Any], rules: dict[str, str]) -> Any:
     parents = refined["parents"]
-
-    def interpolate(values: NDArray[Any], name: str | None) -> NDArray[Any]:
-        if name is not None and name == weights:
-            return interpolate_weights(values, parents)
-        return interpolate_points(values, parents, mask=name is not None and name == mask)
-
     surface = vtkPolyData()
     single = given.GetPoints().GetDataType() == VTK_FLOAT
     points = vtkPoints()
@@ -114,7 +92,8 @@ def _make_surface(given: Any, refined: dict[str, Any], mask: str | None, weights
     surface.SetPolys(polygons)
     surface.GetFieldData().ShallowCopy(given.GetFieldData())
     _copy_arrays(given.GetPointData(), surface.GetPointData(), given.GetNumberOfPoints(),
-                 interpolate, parents.min(axis=1))
+                 lambda values, name: interpolate_points(values, parents, rules.get(name or "")),
+                 parents.min(axis=1))
     others = given.GetNumberOfVerts() + given.GetNumberOfLines()
     ids = np.concatenate([np.arange(others), refined["faces"].ravel()]).astype(np.int64)
     _copy_arrays(given.GetCellData(), surface.GetCellData(), given.GetNumberOfCells(),

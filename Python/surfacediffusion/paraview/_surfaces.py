@@ -11,10 +11,10 @@ from typing import Any, Iterator
 import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdList
+from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkCommonDataModel import (
     vtkCompositeDataSet, vtkMultiBlockDataSet, vtkPartitionedDataSet, vtkPartitionedDataSetCollection,
-    vtkPolyData, vtkPolygon,
+    vtkPolyData,
 )
 
 from .. import _core
@@ -39,8 +39,6 @@ class Shape:
 
     cells: NDArray[np.int64]  #: per triangle, its cell
     core: Any  #: the surface of the extension
-    total_edge_length: float | None = None
-    number_of_edges: int = 0
     refined: dict[tuple[float, int], dict[str, Any]] = field(default_factory=dict)  #: the last one
 
 
@@ -189,7 +187,7 @@ def _read_shape(data: Any) -> Shape:
     first = data.GetNumberOfVerts() + data.GetNumberOfLines()
     triangles, cells = _cut(data.GetPolys(), first, points)
     if data.GetNumberOfStrips():
-        of_strips, cells_of_strips = _cut_strips(
+        of_strips, cells_of_strips = cut_strips(
             data.GetStrips(), first + data.GetNumberOfPolys(), len(points))
         triangles, cells = np.vstack([triangles, of_strips]), np.append(cells, cells_of_strips)
     flags, hidden = cell_flags(data), hidden_points(data)
@@ -255,44 +253,13 @@ def _check(corners: Any, offsets: Any, first: int, count: int) -> None:
 
 
 def _cut(array: Any, first: int, points: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The triangles of polygons, in the order of their cells. Quadrilaterals are cut as by the numerics,
-    larger polygons by vtkPolygon."""
+    """The triangles of polygons, in the order of their cells."""
     corners, offsets = polygons_of(array)
     _check(corners, offsets, first, len(points))
-    sizes = np.diff(offsets)
-    if (sizes == 3).all():
-        return corners.reshape(-1, 3), first + np.arange(len(sizes))
-    numbers = [np.flatnonzero(sizes == 3)]
-    triangles = [corners[offsets[numbers[0], None] + np.arange(3)]]
-    quads = np.flatnonzero(sizes == 4)
-    if len(quads):
-        of_quads = corners[offsets[quads, None] + np.arange(4)]
-        cut = _core.Surface(points, of_quads.ravel(), np.arange(0, 4 * len(quads) + 1, 4))
-        triangles.append(cut.triangles().astype(np.int64))
-        numbers.append(np.repeat(quads, 2))
-    large = np.flatnonzero(sizes > 4)
-    if len(large):
-        found = [_cut_polygon(points, corners[offsets[number]:offsets[number + 1]]) for number in large]
-        triangles.append(np.concatenate(found))
-        numbers.append(np.repeat(large, [len(rows) for rows in found]))
-    all_numbers = np.concatenate(numbers)
-    order = np.argsort(all_numbers, kind="stable")
-    return np.vstack(triangles)[order], first + all_numbers[order]
-
-
-def _cut_polygon(points: Any, corners: Any) -> NDArray[np.int64]:
-    count = len(corners)
-    polygon, ears = vtkPolygon(), vtkIdList()
-    polygon.GetPointIds().SetNumberOfIds(count)
-    polygon.GetPoints().SetNumberOfPoints(count)
-    for i, place in enumerate(points[corners].tolist()):
-        polygon.GetPointIds().SetId(i, i)
-        polygon.GetPoints().SetPoint(i, place)
-    if polygon.EarCutTriangulation(ears) and ears.GetNumberOfIds() > 0:
-        rows = [ears.GetId(i) for i in range(ears.GetNumberOfIds())]
-    else:  # it intersects itself or is flat: use a fan
-        rows = [corner for i in range(1, count - 1) for corner in (0, i, i + 1)]
-    return np.asarray(corners[rows], dtype=np.int64).reshape(-1, 3)
+    if (np.diff(offsets) == 3).all():
+        return corners.reshape(-1, 3), first + np.arange(len(offsets) - 1)
+    cut = _core.Surface(points, corners, offsets)
+    return cut.triangles().astype(np.int64), first + cut.faces()
 
 
 def triangles_of_strip(corners: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -300,7 +267,7 @@ def triangles_of_strip(corners: NDArray[np.int64]) -> NDArray[np.int64]:
     return corners[np.stack([i, i + 1 + i % 2, i + 2 - i % 2], axis=1)]
 
 
-def _cut_strips(array: Any, first: int, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def cut_strips(array: Any, first: int, count: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     corners, offsets = polygons_of(array)
     _check(corners, offsets, first, count)
     triangles, cells = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]

@@ -44,8 +44,8 @@ ResolventPolynomial MakeScaleFilter(std::shared_ptr<const Assembler> assembler,
                                           : ChebyshevSeries(&SecondOrder, DegreeOfSecondOrder);
   const double largestStep = squares.size() > 0 ? squares.maxCoeff() : 1.0;
   auto solver = MakeResolventSolver(mesh, largestStep, series, parallel);
-  return { std::move(assembler), coefficients, 1.0, std::move(series),
-    std::move(solver), parallel };
+  return { std::move(assembler), coefficients, 1.0, std::move(series), std::move(solver),
+    parallel };
 }
 
 } // namespace SurfaceDiffusion

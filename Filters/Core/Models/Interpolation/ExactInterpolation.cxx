@@ -30,33 +30,52 @@ void SmoothInterpolation::FitExactly(
     }
   }
   work.Start = u;
+  Index withoutEnergy = 1;
+  if (this->Options.ComputeError && work.Energy.IsFree() && work.Determined == 0)
+  {
+    ScatteredValues weightless = rows;
+    weightless.Weights.setZero();
+    SmoothFit prior(work.Energy, weightless, Work::IsRegularMesh(*this->Assembly), this->Parallel);
+    const PivotCounts pivots = prior.Prepare(1.0, work.None, false, progress.Part(0.0, 0.0));
+    withoutEnergy = pivots.Open - pivots.Negative;
+  }
   this->Prepare(work, result, 1.0, held, progress.Part(0.0, 0.7));
+  if (work.Determined == 0)
+  {
+    work.Determined = std::max<Index>(1, withoutEnergy - work.Open);
+  }
   Values forces = work.Fit.Solve(rows.Given, u);
   progress.Report(0.8);
   if (this->Options.ComputeError)
   {
+    const Flags isOpen = this->FindOpen(work);
+    result.HasInfiniteError = isOpen.any();
     // u^T Q u is the variance of the field times a chi-square variable.
     const Vector variances = work.Fit.InverseDiagonal(progress.Part(0.8, 0.95)) +
       this->VarianceOfMean(work, held, true, progress.Part(0.95, 0.95)); // without bounds
     const Vector energies = work.Energy.Squares(u);
-    const double free = std::max<double>(1.0, rows.Count() - 1);
+    const double free = std::max<double>(1.0, rows.Count() - work.Determined);
     for (Eigen::Index c = 0; c < columns; ++c)
     {
       const double factor = StudentFactor(free);
       const double scale = factor * factor * energies[c] / free;
       for (Eigen::Index i = 0; i < u.rows(); ++i)
       {
-        result.Error(i, c) = held[i] ? 0.0 : std::sqrt(std::max(0.0, scale * variances[i]));
+        result.Error(i, c) =
+          held[i] || isOpen[i] ? 0.0 : std::sqrt(std::max(0.0, scale * variances[i]));
       }
       // The energy of values that a function without energy reaches is round-off.
       constexpr double resolved = 1e-12;
-      const bool isKnown = rows.Count() > 1 &&
-        (held.all() || result.Error.col(c).maxCoeff() > resolved * work.SizeOf(c));
+      const bool isKnown = rows.Count() > work.Determined &&
+        (held.all() ||
+          result.Error.col(c).maxCoeff() > work.RoundOff(c, resolved, work.Energy.IsFree()));
       if (!isKnown)
       {
         result.Error.col(c).setConstant(std::numeric_limits<double>::quiet_NaN());
         result.HasUnknownError = true;
       }
+      result.Error.col(c) =
+        isOpen.select(std::numeric_limits<double>::infinity(), result.Error.col(c).array());
     }
   }
   for (Eigen::Index c = 0; c < columns && this->Options.KeepRange; ++c)

@@ -145,6 +145,32 @@ struct Junctions
 
 } // namespace
 
+Index HessianEnergy::TooManyTriangles(const TriangleMesh& mesh, double more)
+{
+  double entries = 0.0;
+  Index largest = 0;
+  std::vector<Index> uses(static_cast<std::size_t>(mesh.NumberOfVertices()), 0);
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    Index count = 0;
+    for (const Index change : { 1, -1 })
+    {
+      for (Index c = mesh.VertexCornersBegin()[i]; c < mesh.VertexCornersBegin()[i + 1]; ++c)
+      {
+        for (const int other : { 1, 2 })
+        {
+          const Index j = mesh.OtherCorner(mesh.VertexCorners()[c], other);
+          uses[j] += change;
+          count = std::max(count, uses[j]);
+        }
+      }
+    }
+    entries += (count + 1.0) * (count + 1.0);
+    largest = std::max(largest, count);
+  }
+  return entries > 400.0 * mesh.NumberOfVertices() + more ? largest : 0;
+}
+
 HessianEnergy::HessianEnergy(const TriangleMesh& mesh, bool withNegativeCurvature)
 {
   constexpr double third = 1.0 / 3.0;

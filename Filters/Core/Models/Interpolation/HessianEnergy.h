@@ -25,6 +25,10 @@ struct HessianEnergy
   /// handles, E may then be indefinite; without negative angle defects it is not.
   explicit HessianEnergy(const TriangleMesh& mesh, bool withNegativeCurvature = true);
 
+  /// If edges of many triangles let G^T E G have more entries than 400 per vertex, of which an even mesh
+  /// has 49, and `more`, the number of triangles of the edge with the most, otherwise 0.
+  static Index TooManyTriangles(const TriangleMesh& mesh, double more);
+
   SparseMatrix Gradient; ///< G, 2 per edge and 1 per triangle of an edge of three or more x n
   SparseMatrix Energy; ///< E
 };

@@ -126,6 +126,7 @@ void InfluenceSpectrum::Decompose(
   }
   const Eigen::MatrixXd symmetric = 0.5 * (influence + influence.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
+  this->Largest = solver.eigenvalues().maxCoeff();
   this->Shares = solver.eigenvalues().cwiseMax(0.0).cwiseMin(1.0);
   this->Vectors = solver.eigenvectors();
   for (Index i = 0; i < this->Count; ++i)
@@ -197,6 +198,7 @@ std::vector<InfluenceSpectrum::Measure> InfluenceSpectrum::MeasuresOf(
     Measure measure;
     for (Eigen::Index j = 0; j < size; ++j)
     {
+      this->Largest = std::max(this->Largest, solver.eigenvalues()[j]);
       const double share = std::min(1.0, std::max(0.0, solver.eigenvalues()[j]));
       const double first = solver.eigenvectors()(0, j);
       measure.emplace_back(share, squares[c] * first * first);
@@ -253,6 +255,12 @@ double InfluenceSpectrum::DegreesOfFreedom(double mu) const
   return sum;
 }
 
+Index InfluenceSpectrum::NumberOfHeld() const
+{
+  constexpr double least = 1.0 - 1e-4;
+  return static_cast<Index>((this->Shares.array() > least).count());
+}
+
 double InfluenceSpectrum::Residual(double mu, Eigen::Index column) const
 {
   double sum = 0.0;
@@ -267,7 +275,7 @@ double InfluenceSpectrum::Residual(double mu, Eigen::Index column) const
 double InfluenceSpectrum::Score(double mu, Eigen::Index column) const
 {
   const double free = this->Count - this->DegreesOfFreedom(mu);
-  return this->Count * this->Residual(mu, column) / (free * free);
+  return free > 0.0 ? this->Count * this->Residual(mu, column) / (free * free) : 0.0;
 }
 
 double InfluenceSpectrum::BestSmoothing(Eigen::Index column, double noise) const

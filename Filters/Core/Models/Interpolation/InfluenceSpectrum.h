@@ -44,6 +44,12 @@ public:
   /// The trace of S at mu: the degrees of freedom of the fit.
   double DegreesOfFreedom(double mu) const;
 
+  /// The eigenvalues near 1, of few values: functions without energy that the values determine.
+  Index NumberOfHeld() const;
+
+  /// Whether an eigenvalue is above 1, which shows that a function has a negative energy.
+  bool IsIndefinite() const { return this->Largest > 1.0 + 1e-4; }
+
   /// sum w (u(p) - d)^2 at mu, of a column of the data.
   double Residual(double mu, Eigen::Index column) const;
 
@@ -97,8 +103,8 @@ private:
   double CostOf(Criterion criterion, double mu, Eigen::Index column, double noise) const;
   double SlopeOf(Criterion criterion, double mu, Eigen::Index column, double noise) const;
   double Minimiser(Criterion criterion, Eigen::Index column, double noise) const;
-  static std::vector<Measure> MeasuresOf(const SmoothFit& fit, const Vector& roots, Values v,
-    int steps, const ProgressMonitor& progress);
+  std::vector<Measure> MeasuresOf(const SmoothFit& fit, const Vector& roots, Values v, int steps,
+    const ProgressMonitor& progress);
   void ModelTrace(const SmoothFit& fit, const Determinant& other);
   void Decompose(
     const SmoothFit& fit, const ScatteredValues& data, const ProgressMonitor& progress);
@@ -106,6 +112,7 @@ private:
 
   bool IsExact = false;
   bool KnowsTrace;
+  double Largest = 0.0; ///< eigenvalue
   Determinant Own;
   double Mu;
   Index Count; ///< of values, repeats at one place included

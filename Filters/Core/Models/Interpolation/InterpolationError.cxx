@@ -19,7 +19,7 @@ Vector SmoothInterpolation::ErrorOverSmoothing(
   const SmoothingPosterior posterior(*work.Spectrum, work.Rows, column, this->Options.NoiseLevel);
   constexpr double resolved = 16.0 * std::numeric_limits<double>::epsilon();
   const bool showsDeviation = this->Options.NoiseLevel > 0.0 ||
-    posterior.Contrast() > resolved * work.SizeOf(column) ||
+    posterior.Contrast() > work.RoundOff(column, resolved, result.IsFlattest) ||
     work.Rows.Scatter.col(column).sum() > 0.0;
   if (!posterior.IsKnown() || !showsDeviation)
   {

@@ -36,7 +36,8 @@ PivotCounts SmoothFit::Prepare(
     // H stays as well conditioned as the energy.
     constexpr double stiffness = 1e3;
     constexpr double least = 1e-6; // in triangles alone, in which no function has an energy
-    const Vector diagonal = this->Energy.Matrix().diagonal().cwiseMax(least * this->Energy.Sizes());
+    const Vector diagonal =
+      this->Energy.Matrix().diagonal().head(held.size()).cwiseMax(least * this->Energy.Sizes());
     for (Index i = 0; i < this->Data.Count(); ++i)
     {
       const SurfacePoint& place = this->Data.Places[i];
@@ -59,12 +60,13 @@ PivotCounts SmoothFit::Prepare(
       }
     }
   }
+  const auto isHeld = [&](Index i) { return i < held.size() && held[i]; };
   ForEach(this->Parallel, static_cast<Index>(this->H.rows()),
     [&](Index j)
     {
       for (SparseMatrix::InnerIterator a(this->H, j); a; ++a)
       {
-        if (held[a.index()] || held[j])
+        if (isHeld(static_cast<Index>(a.index())) || isHeld(j))
         {
           a.valueRef() = a.index() == j ? 1.0 : 0.0;
         }
@@ -116,7 +118,7 @@ Values SmoothFit::AtPoints(const Values& u) const
 
 Values SmoothFit::ToVertices(const Values& v) const
 {
-  Values u = Values::Zero(this->H.rows(), v.cols());
+  Values u = Values::Zero(this->Held.size(), v.cols());
   for (Index i = 0; i < this->Data.Count(); ++i)
   {
     const SurfacePoint& place = this->Data.Places[i];
@@ -152,10 +154,21 @@ void SmoothFit::ReleaseHeld(Values& x) const
     });
 }
 
-void SmoothFit::ApplyInverse(Values& x) const
+/// x becomes the solution for the forces x, without forces on the held vertices and on what unknowns the
+/// energy has beside the vertices.
+void SmoothFit::SolveSystem(Values& x, const std::vector<char>& needed) const
 {
   this->ReleaseHeld(x);
-  this->Factor.Solve(x, this->Parallel);
+  const Eigen::Index n = x.rows();
+  x.conservativeResize(this->H.rows(), Eigen::NoChange);
+  x.bottomRows(x.rows() - n).setZero();
+  this->Factor.Solve(x, needed, this->Parallel);
+  x.conservativeResize(n, Eigen::NoChange);
+}
+
+void SmoothFit::ApplyInverse(Values& x) const
+{
+  this->SolveSystem(x, {});
   if (this->Vectors.size() == 0)
   {
     return;
@@ -165,16 +178,14 @@ void SmoothFit::ApplyInverse(Values& x) const
     this->Vectors.transpose() * (roots.asDiagonal() * this->AtPoints(x));
   Values change =
     this->ToVertices(roots.asDiagonal() * (this->Vectors * (this->Scales.asDiagonal() * parts)));
-  this->ReleaseHeld(change);
-  this->Factor.Solve(change, this->Parallel);
+  this->SolveSystem(change, {});
   x = (x - change) * (this->FactorMu / this->Mu);
 }
 
 Values SmoothFit::InverseAtPoints(const Values& v) const
 {
   Values x = this->ToVertices(v);
-  this->ReleaseHeld(x);
-  this->Factor.Solve(x, this->NeededAtPoints, this->Parallel);
+  this->SolveSystem(x, this->NeededAtPoints);
   return this->AtPoints(x);
 }
 

@@ -59,10 +59,10 @@ public:
   /// The diagonal of H^-1, of the mu of Prepare().
   Vector InverseDiagonal(const ProgressMonitor& progress) const
   {
-    return this->Factor.InverseDiagonal(this->Parallel, progress);
+    return this->Factor.InverseDiagonal(this->Parallel, progress).head(this->Held.size());
   }
 
-  /// log(det(H)), of the mu of Prepare(), and the rows of H.
+  /// log(det(H)), of the mu of Prepare(), and the rows of H, with the further unknowns of the energy.
   double LogDeterminant() const;
   Index NumberOfRows() const { return static_cast<Index>(this->H.rows()); }
 
@@ -74,6 +74,7 @@ public:
 
 private:
   void ReleaseHeld(Values& x) const;
+  void SolveSystem(Values& x, const std::vector<char>& needed) const;
   void Refine(const Values& given, const Values& forces, Values& u);
   Vector FindForces(const Vector& misfit) const;
 

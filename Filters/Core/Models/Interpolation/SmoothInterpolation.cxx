@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/SmoothInterpolation.h"
 
+#include "Core/Foundation/Random.h"
 #include "Core/Models/Interpolation/InfluenceSpectrum.h"
 #include "Core/Models/Interpolation/RangeConstraint.h"
 #include "Core/Models/Interpolation/SmoothInterpolationWork.h"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -23,47 +23,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-/// Throws std::runtime_error if points or edges with many triangles let the energy, a square of sparse
-/// matrices, have more entries than there should be memory for.
-void RequireSparse(const TriangleMesh& mesh, RimCondition rim)
-{
-  constexpr double most = 3e7; // and 400 per vertex; an even mesh has 49
-  constexpr double bytes = 32.0; // of an entry, with those of the system and its factor
-  double entries = 0.0;
-  Index largest = 0;
-  std::vector<Index> uses(static_cast<std::size_t>(mesh.NumberOfVertices()), 0);
-  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-  {
-    const Index begin = mesh.VertexCornersBegin()[i];
-    const Index end = mesh.VertexCornersBegin()[i + 1];
-    Index count = end - begin; // of the triangles whose unknowns have a common equation
-    if (rim == RimCondition::Free) // those of an edge
-    {
-      count = 0;
-      for (Index c = begin; c < end; ++c)
-      {
-        count = std::max(count, ++uses[mesh.OtherCorner(mesh.VertexCorners()[c], 1)]);
-        count = std::max(count, ++uses[mesh.OtherCorner(mesh.VertexCorners()[c], 2)]);
-      }
-      for (Index c = begin; c < end; ++c)
-      {
-        uses[mesh.OtherCorner(mesh.VertexCorners()[c], 1)] = 0;
-        uses[mesh.OtherCorner(mesh.VertexCorners()[c], 2)] = 0;
-      }
-    }
-    entries += (count + 1.0) * (count + 1.0);
-    largest = std::max(largest, count);
-  }
-  if (entries > most + 400.0 * mesh.NumberOfVertices())
-  {
-    std::ostringstream text;
-    text << (rim == RimCondition::Free ? "an edge" : "a point") << " of the surface has " << largest
-         << " triangles, which would take " << bytes * entries / 1e9
-         << " GB of memory; allowed: about 5000 (remesh the surface there)";
-    throw std::runtime_error(text.str());
-  }
-}
 
 /// The values of each component, with its own numbers of vertices.
 std::vector<RepeatedValues> ByComponent(const TriangleMesh& mesh, const RepeatedValues& all)
@@ -228,7 +187,9 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
     valuesOfParts.push_back(&rows);
     ++result.Parts;
     result.PartsWithTooFewValues += part.PartsWithTooFewValues;
+    result.EnoughPlaces = std::max(result.EnoughPlaces, part.EnoughPlaces);
     result.HasUnknownError = result.HasUnknownError || part.HasUnknownError;
+    result.HasInfiniteError = result.HasInfiniteError || part.HasInfiniteError;
     result.IsFlattest = result.IsFlattest || part.IsFlattest;
     result.DropsNegativeCurvature = result.DropsNegativeCurvature || part.DropsNegativeCurvature;
     result.RangeIsOptimal = result.RangeIsOptimal && part.RangeIsOptimal;
@@ -263,7 +224,6 @@ SmoothInterpolation::Result SmoothInterpolation::FitPart(const RepeatedValues& r
 {
   const Index n = this->Assembly->Mesh().NumberOfVertices();
   const Eigen::Index columns = rows.Given.cols();
-  RequireSparse(this->Assembly->Mesh(), this->Options.Rim);
   Work work(*this->Assembly, this->Coefficients, this->Options, rows, this->Parallel);
   work.Lowest = lowest;
   work.Highest = highest;
@@ -276,9 +236,8 @@ SmoothInterpolation::Result SmoothInterpolation::FitPart(const RepeatedValues& r
   {
     result.Error = Values::Zero(n, columns);
   }
-  constexpr Index fewest = 3;
   result.PartsWithTooFewValues =
-    this->Options.Smoothing == Choice::Automatic && rows.Count() < fewest ? 1 : 0;
+    this->Options.Smoothing == Choice::Automatic && rows.Count() < result.EnoughPlaces ? 1 : 0;
   if (this->Options.Smoothing == Choice::Exact || result.PartsWithTooFewValues > 0)
   {
     this->FitExactly(work, result, progress);
@@ -322,7 +281,7 @@ double SmoothInterpolation::StartSmoothing(const Work& work) const
 {
   constexpr double reach = 3.0;
   const ScatteredValues& rows = work.Rows;
-  const double diffusivity = this->Options.Rim == RimCondition::Free
+  const double diffusivity = work.Energy.IsFree()
     ? 1.0
     : this->Coefficients.sum() / CotanWeights(this->Assembly->Mesh(), this->Parallel).sum();
   const double square = reach * reach * work.Area / rows.Count();
@@ -331,18 +290,34 @@ double SmoothInterpolation::StartSmoothing(const Work& work) const
   return rows.Weights.sum() / work.Area / (scale * scale);
 }
 
+void SmoothInterpolation::DropNegativeCurvature(Work& work, Result& result)
+{
+  work.Energy.DropNegativeCurvature();
+  work.EnergyOfMean = -1.0;
+  result.DropsNegativeCurvature = true;
+}
+
 void SmoothInterpolation::Prepare(
   Work& work, Result& result, double mu, const Flags& held, const ProgressMonitor& progress) const
 {
   const bool isExact = this->Options.Smoothing == Choice::Exact || result.PartsWithTooFewValues > 0;
   PivotCounts pivots = work.Fit.Prepare(mu, held, isExact, progress);
-  const bool isFree = this->Options.Rim == RimCondition::Free;
-  if (pivots.Negative > 0 && isFree && !result.DropsNegativeCurvature)
+  if (pivots.Negative > 0 && work.Energy.IsFree() && !result.DropsNegativeCurvature)
   {
-    work.Energy.DropNegativeCurvature();
-    work.EnergyOfMean = -1.0;
-    result.DropsNegativeCurvature = true;
+    DropNegativeCurvature(work, result);
     pivots = work.Fit.Prepare(mu, held, isExact, progress);
+  }
+  if (pivots.Open > 0 && !isExact && !result.IsFlattest)
+  {
+    // mu may be so large that what the values determine is lost in round-off.
+    const double moderate = std::min(mu, this->StartSmoothing(work));
+    const bool isOpen =
+      moderate == mu || work.Fit.Prepare(moderate, held, isExact, progress).Open > 0;
+    while (!isOpen && pivots.Open > 0 && mu > moderate)
+    {
+      mu = std::max(moderate, 0.1 * mu);
+      pivots = work.Fit.Prepare(mu, held, isExact, progress);
+    }
   }
   if (pivots.Open > 0 && !result.IsFlattest)
   {
@@ -350,6 +325,7 @@ void SmoothInterpolation::Prepare(
     const double n = static_cast<double>(held.size());
     work.Energy.AddTension(std::max(1e-6, 1e-12 * n * n) / work.Area);
     work.EnergyOfMean = -1.0;
+    work.Open = pivots.Open;
     result.IsFlattest = true;
     pivots = work.Fit.Prepare(mu, held, isExact, progress);
   }
@@ -357,6 +333,34 @@ void SmoothInterpolation::Prepare(
   {
     throw NotPositiveDefinite();
   }
+}
+
+/// The vertices that functions reach which have neither values nor, but for the tension, an energy: of
+/// all functions the inverse keeps these when it is applied again and again.
+Flags SmoothInterpolation::FindOpen(const Work& work) const
+{
+  constexpr Index samples = 8; // one of them may vanish where others do not
+  constexpr double resolved = 1e-6;
+  if (work.Open == 0)
+  {
+    return work.None;
+  }
+  Values v(work.None.size(), samples);
+  for (Index i = 0; i < static_cast<Index>(v.rows()); ++i)
+  {
+    for (Index c = 0; c < samples; ++c)
+    {
+      v(i, c) = UniformRandom(0, c, i);
+    }
+  }
+  for (int round = 0; round < 6; ++round)
+  {
+    Values forces;
+    work.Energy.MultiplyStiffness(v, forces);
+    work.Fit.ApplyInverse(forces);
+    v = forces / forces.cwiseAbs().maxCoeff();
+  }
+  return v.array().abs().rowwise().maxCoeff() > resolved;
 }
 
 /// What the error of the mean adds to the variance of the fit that is prepared, in units of s^2. The
@@ -399,8 +403,8 @@ void SmoothInterpolation::FitSmoothly(
   const bool isGiven = this->Options.Smoothing == Choice::Given;
   const double noise =
     this->Options.Smoothing == Choice::NoiseLevel ? this->Options.NoiseLevel : 0.0;
-  const double largest = work.LargestSmoothing();
-  const double givenMu = std::min(largest, this->Options.Mu);
+  const auto limited = [&](double mu) { return std::min(mu, work.LargestSmoothing()); };
+  const double givenMu = limited(this->Options.Mu);
   const auto measure = [&](double mu, const InfluenceSpectrum::Determinant& other,
                          const RepeatedValues& data, const ProgressMonitor& part)
   {
@@ -416,13 +420,36 @@ void SmoothInterpolation::FitSmoothly(
     found.DegreesOfFreedom = spectrum.DegreesOfFreedom(mu);
   };
   constexpr double apart = 1.1; // between two mu whose determinants give the trace
-  const double startMu = isGiven ? givenMu : std::min(largest, this->StartSmoothing(work));
+  const double startMu = isGiven ? givenMu : limited(this->StartSmoothing(work));
+  const auto changes = [&] { return std::pair(result.IsFlattest, result.DropsNegativeCurvature); };
   InfluenceSpectrum::Determinant none;
   if (isGiven && rows.Count() > InfluenceSpectrum::FewValues)
   {
     none = measure(givenMu / apart, none, rows, progress.Part(0.0, 0.2)).Known();
   }
+  auto before = changes();
   const InfluenceSpectrum start = measure(startMu, none, rows, progress.Part(0.2, 0.4));
+  const bool isIndefinite =
+    start.IsIndefinite() && work.Energy.IsFree() && !result.DropsNegativeCurvature;
+  if (isIndefinite)
+  {
+    DropNegativeCurvature(work, result);
+  }
+  if (isIndefinite || (none.Mu > 0.0 && changes() != before))
+  {
+    // Determinants of two energies do not compare.
+    this->FitSmoothly(work, result, progress.Part(0.4, 1.0));
+    return;
+  }
+  before = changes();
+  work.Determined = std::max<Index>(1, start.NumberOfHeld());
+  if (this->Options.Smoothing == Choice::Automatic && rows.Count() < work.Determined + 2)
+  {
+    result.PartsWithTooFewValues = 1;
+    result.EnoughPlaces = work.Determined + 2;
+    this->FitExactly(work, result, progress.Part(0.4, 1.0));
+    return;
+  }
   if (isGiven)
   {
     for (Eigen::Index c = 0; c < columns; ++c)
@@ -433,8 +460,6 @@ void SmoothInterpolation::FitSmoothly(
     return;
   }
   work.Spectrum = start.Eigenvectors().cols() > 0 ? &start : nullptr;
-  const bool wasFlattest = result.IsFlattest;
-  const bool didDrop = result.DropsNegativeCurvature;
   // One factor serves all columns that need no other; those first, so that it is there still.
   const bool needsFactor = this->Options.ComputeError || this->Options.KeepRange;
   std::vector<Eigen::Index> others;
@@ -443,7 +468,7 @@ void SmoothInterpolation::FitSmoothly(
   { return 0.4 + 0.6 * (done + part) / static_cast<double>(columns); };
   for (Eigen::Index c = 0; c < columns; ++c)
   {
-    const double mu = std::min(largest, start.BestSmoothing(c, noise));
+    const double mu = limited(start.BestSmoothing(c, noise));
     take(start, mu, c, c);
     if (!needsFactor && start.Rescale(work.Fit, mu) &&
       this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.0), at(1.0))))
@@ -458,7 +483,7 @@ void SmoothInterpolation::FitSmoothly(
   work.Fit.Restore(); // another column may have the mu of the last one, and need its own factor
   for (const Eigen::Index c : others)
   {
-    double mu = std::min(largest, start.BestSmoothing(c, noise));
+    double mu = limited(start.BestSmoothing(c, noise));
     take(start, mu, c, c);
     constexpr int most = 6;
     bool isResolved = start.Resolves(mu);
@@ -472,16 +497,17 @@ void SmoothInterpolation::FitSmoothly(
       const InfluenceSpectrum nearer = measure(isNear ? last.Mu / apart : mu, last, column,
         progress.Part(at(0.5 * again / most), at(0.5 * (again + 1) / most)));
       last = nearer.Known();
-      mu = std::min(largest, nearer.BestSmoothing(0, noise));
+      mu = limited(nearer.BestSmoothing(0, noise));
       take(nearer, mu, c, 0);
       isResolved = nearer.Resolves(mu);
     }
     this->FitColumns(work, result, c, 1, mu, progress.Part(at(0.5), at(1.0)));
     ++done;
   }
-  if (columns > 1 && (result.IsFlattest != wasFlattest || result.DropsNegativeCurvature != didDrop))
+  if (changes() != before)
   {
-    // All columns have one energy, so that their results do not depend on the order of the columns.
+    // Measures of two energies do not compare, and all columns have one energy, so that their results do
+    // not depend on the order of the columns.
     this->FitSmoothly(work, result, progress.Part(1.0, 1.0));
   }
 }
@@ -506,6 +532,12 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     return false;
   }
   Vector deviations;
+  Flags isOpen;
+  if (this->Options.ComputeError)
+  {
+    isOpen = this->FindOpen(work);
+    result.HasInfiniteError = result.HasInfiniteError || isOpen.any();
+  }
   if (this->Options.ComputeError && work.Spectrum)
   {
     deviations = this->ErrorOverSmoothing(work, result, first, progress.Part(0.4, 0.8));
@@ -519,6 +551,7 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
   for (Eigen::Index c = 0; c < count; ++c)
   {
     Column& found = result.Columns[static_cast<std::size_t>(first + c)];
+    found.Mu = work.Fit.GetSmoothing();
     Values u = all.col(c);
     if (this->Options.KeepRange)
     {
@@ -536,7 +569,8 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
                                                       : std::sqrt(squares / std::max(fewest, left));
     if (this->Options.ComputeError && work.Spectrum)
     {
-      result.Error.col(first + c) = deviations; // without bounds
+      result.Error.col(first + c) = isOpen.select(
+        std::numeric_limits<double>::infinity(), deviations.array()); // without bounds
       result.HasUnknownError = result.HasUnknownError || deviations.hasNaN();
     }
     else if (this->Options.ComputeError)
@@ -545,11 +579,12 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
       constexpr double resolved = 16.0 * std::numeric_limits<double>::epsilon();
       const bool isKnown = this->Options.NoiseLevel > 0.0 ||
         (left > fewest &&
-          std::sqrt(squares / rows.Weights.sum()) > resolved * work.SizeOf(first + c));
+          std::sqrt(squares / rows.Weights.sum()) >
+            work.RoundOff(first + c, resolved, result.IsFlattest));
       const double factor = this->Options.NoiseLevel > 0.0 ? 1.0 : StudentFactor(left);
-      result.Error.col(first + c) = // without bounds
+      result.Error.col(first + c) = isOpen.select(std::numeric_limits<double>::infinity(),
         (isKnown ? factor * found.NoiseLevel : std::numeric_limits<double>::quiet_NaN()) *
-        deviations;
+          deviations.array()); // without bounds
       result.HasUnknownError = result.HasUnknownError || !isKnown;
     }
     result.U.col(first + c) = u;

@@ -83,16 +83,19 @@ public:
     Values U; ///< n x k; NaN in components without values
     /// The standard error, n x k; no rows unless asked for. NaN in components without values, and in
     /// those whose values do not show a deviation: one, all on a function without energy, or all
-    /// reached by the fit.
+    /// reached by the fit. Infinite where the values leave a slope open.
     Values Error;
-    bool HasUnknownError = false; ///< the latter
+    bool HasUnknownError = false; ///< of values that do not show a deviation
+    bool HasInfiniteError = false;
     std::vector<Column> Columns;
     Index UndeterminedComponents = 0; ///< without values
     Index RepeatedValues = 0; ///< at a place that another value has, too
     Index ContradictingPlaces = 0; ///< whose values differ: their weighted mean counts
     Index Parts = 0; ///< components with values
-    /// Automatic: those with fewer than three places, too few for a choice of mu: their values hold.
+    /// Automatic: those with fewer than two places more than functions without energy, too few for a
+    /// choice of mu: their values hold.
     Index PartsWithTooFewValues = 0;
+    Index EnoughPlaces = 3; ///< for the choice; up to 5 on flat pieces with Free
     /// Free, on surfaces on which the values leave a slope open: the flattest function is taken.
     bool IsFlattest = false;
     /// Free, on coarse meshes of surfaces with saddles: the energy was indefinite and is taken without
@@ -126,6 +129,8 @@ private:
     Values& forces, const ProgressMonitor& progress) const;
   void Prepare(Work& work, Result& result, double mu, const Flags& held,
     const ProgressMonitor& progress) const;
+  static void DropNegativeCurvature(Work& work, Result& result);
+  Flags FindOpen(const Work& work) const;
   Vector VarianceOfMean(
     Work& work, const Flags& held, bool isExact, const ProgressMonitor& progress) const;
   Vector ErrorOverSmoothing(

@@ -47,13 +47,18 @@ struct SmoothInterpolation::Work
     constexpr double resolved = 1e-13;
     // Of an energy that no function has, round-off of any sign is left.
     const double energy = this->Energy.Matrix().diagonal().cwiseAbs().sum();
-    return this->TotalWeight / (resolved * energy);
+    // Tension is little beside the values.
+    const double bend = std::max(resolved * energy, 1e5 * this->Energy.GetTension());
+    return this->TotalWeight / bend;
   }
 
-  /// The largest magnitude of the values of a column.
-  double SizeOf(Eigen::Index column) const
+  /// What is round-off of a column: `share` of its largest magnitude or, if it comes from functions
+  /// that the energy or the tension all but lets free, of its contrast.
+  double RoundOff(Eigen::Index column, double share, bool isOfFree) const
   {
-    return (this->Rows.Given.col(column).array() + this->Origin[column]).abs().maxCoeff();
+    const auto values = this->Rows.Given.col(column).array();
+    return std::max(share * (values + this->Origin[column]).abs().maxCoeff(),
+      isOfFree ? 1e-5 * values.abs().maxCoeff() : 0.0);
   }
 
   RepeatedValues Rows;
@@ -63,6 +68,9 @@ struct SmoothInterpolation::Work
   Flags None; ///< no vertex
   Eigen::RowVectorXd Origin; ///< from which values are measured
   double TotalWeight; ///< of the values
+  Index Open = 0; ///< functions without energy that the values leave open
+  /// Those that the values determine; 0: not known.
+  Index Determined = 0;
   Eigen::RowVectorXd Lowest, Highest; ///< the bounds of a column
   Values Start;
   /// w^T B Q^-1 B^T w for the weights w of the mean of the values; negative: not known

@@ -4,8 +4,11 @@
 
 #include "Core/Models/Interpolation/HessianEnergy.h"
 #include "Core/Models/Interpolation/ResolvedShare.h"
+#include "Core/Models/Interpolation/SparseSquare.h"
 #include "Core/Operators/CotanWeights.h"
 
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -24,6 +27,17 @@ CornerWeights Resolved(const TriangleMesh& mesh, CornerWeights coefficients)
   return coefficients;
 }
 
+RimCondition RimOf(const TriangleMesh& mesh, RimCondition rim)
+{
+  if (rim != RimCondition::Automatic)
+  {
+    return rim;
+  }
+  const bool isFree =
+    !mesh.BoundaryVertices().empty() && HessianEnergy::TooManyTriangles(mesh, 0.0) == 0;
+  return isFree ? RimCondition::Free : RimCondition::Natural;
+}
+
 } // namespace
 
 SmoothnessEnergy::SmoothnessEnergy(const Assembler& assembler, const CornerWeights& coefficients,
@@ -31,21 +45,28 @@ SmoothnessEnergy::SmoothnessEnergy(const Assembler& assembler, const CornerWeigh
   : Mesh(assembler.Mesh())
   , Parallel(parallel)
   , Kappa(kappa)
-  , Rim(rim)
+  , Rim(RimOf(assembler.Mesh(), rim))
 {
   const Vector& areas = this->Mesh.ControlAreas();
   const Vector none = Vector::Zero(areas.size());
   const double square = kappa * kappa;
-  const CornerWeights resolved = Resolved(
-    this->Mesh, rim == RimCondition::Natural ? coefficients : CotanWeights(this->Mesh, parallel));
+  const CornerWeights resolved =
+    Resolved(this->Mesh, this->IsFree() ? CotanWeights(this->Mesh, parallel) : coefficients);
   assembler.TakePattern(this->K, parallel);
   SparseMatrix first = this->K;
   assembler.Fill(this->K, none, 1.0, resolved, nullptr, parallel);
-  if (rim == RimCondition::Natural)
+  if (!this->IsFree())
   {
     assembler.Fill(first, square * areas, 1.0, resolved, nullptr, parallel);
-    this->Q = first * areas.cwiseInverse().asDiagonal() * first;
+    this->Q = SparseSquare(first, areas, square);
     return;
+  }
+  constexpr double most = 3e7; // entries, of 32 bytes with those of the system and its factor
+  if (const Index many = HessianEnergy::TooManyTriangles(this->Mesh, most))
+  {
+    throw std::runtime_error("an edge of the surface has " + std::to_string(many) +
+      " triangles; allowed with a free boundary: about 5000 (take the natural one, or remesh the "
+      "surface there)");
   }
   assembler.Fill(first, (square * square) * areas, 2.0 * square, resolved, nullptr, parallel);
   this->First = std::move(first);
@@ -60,6 +81,16 @@ void SmoothnessEnergy::TakeHessian(bool withNegativeCurvature)
   const SparseMatrix product = this->Second * this->Gradient;
   const SparseMatrix transposed = this->Gradient.transpose();
   this->Q = transposed * product;
+  // No function bends in triangles that share no edge with others: what their vertices have is round-off.
+  const Vector least = 1e-12 * this->Sizes();
+  const Flags isOpen = this->Q.diagonal().array() <= least.array();
+  for (Index j = 0; j < static_cast<Index>(isOpen.size()); ++j)
+  {
+    for (SparseMatrix::InnerIterator a(this->Q, j); a; ++a)
+    {
+      a.valueRef() = isOpen[j] || isOpen[a.index()] ? 0.0 : a.value();
+    }
+  }
   this->Q += this->First;
 }
 
@@ -78,7 +109,9 @@ Vector SmoothnessEnergy::Sizes() const
 void SmoothnessEnergy::AddTension(double tension)
 {
   this->Tension += tension;
-  this->Q += tension * this->K;
+  SparseMatrix stiffness = this->K;
+  stiffness.conservativeResize(this->Q.rows(), this->Q.cols());
+  this->Q += tension * stiffness;
 }
 
 void SmoothnessEnergy::MultiplyStiffness(const Values& u, Values& y) const
@@ -99,7 +132,7 @@ void SmoothnessEnergy::Multiply(const Values& u, Values& y) const
 {
   const Vector& areas = this->Mesh.ControlAreas();
   const double square = this->Kappa * this->Kappa;
-  if (this->Rim == RimCondition::Natural)
+  if (!this->IsFree())
   {
     Values second; // M^-1 (kappa^2 M + K) u
     this->MultiplyStiffness(u, second);
@@ -127,7 +160,13 @@ Vector SmoothnessEnergy::Squares(const Values& u) const
 {
   Values product;
   this->Multiply(u, product);
-  return u.cwiseProduct(product).colwise().sum();
+  Vector squares = u.cwiseProduct(product).colwise().sum();
+  if (this->Tension > 0.0)
+  {
+    this->MultiplyStiffness(u, product);
+    squares -= this->Tension * u.cwiseProduct(product).colwise().sum().transpose();
+  }
+  return squares;
 }
 
 } // namespace SurfaceDiffusion

@@ -14,7 +14,10 @@ enum class RimCondition
   /// the boundary, across it.
   Natural,
   /// None: functions continue their slope. On flat surfaces linear functions have no energy.
-  Free
+  Free,
+  /// Natural on closed connected surfaces, and where edges have so many triangles that Q has more than
+  /// 400 entries per vertex with Free; Free on others.
+  Automatic
 };
 
 /// The energy of fourth order of a function on a surface, 1/2 u^T Q u, in units of the mesh.
@@ -30,9 +33,12 @@ enum class RimCondition
 class SmoothnessEnergy
 {
 public:
-  /// coefficients: of K, as in CotanWeights.h; not used with Free. kappa: >= 0.
+  /// coefficients: of K, as in CotanWeights.h; not used with Free. kappa: >= 0. Throws
+  /// std::runtime_error if an edge has so many triangles that Free takes gigabytes.
   SmoothnessEnergy(const Assembler& assembler, const CornerWeights& coefficients, double kappa,
     RimCondition rim, const ParallelFor& parallel = SerialFor());
+
+  bool IsFree() const { return this->Rim == RimCondition::Free; }
 
   /// Of Free: leave negative curvature out, without which no function has a negative energy.
   void DropNegativeCurvature();
@@ -43,19 +49,24 @@ public:
   /// Add tension int |grad u|^2 to u^T Q u, in 1/length^2.
   void AddTension(double tension);
 
-  /// Q. Its pattern contains that of the assembler.
+  double GetTension() const { return this->Tension; }
+
+  /// Q. Its pattern contains that of the assembler. Natural: with further unknowns after those of the
+  /// vertices where vertices have many triangles, see SparseSquare().
   const SparseMatrix& Matrix() const { return this->Q; }
 
   /// y = Q u, by differences of u: exact for constants where Q has a small round-off that the
   /// fourth order of the operator makes large.
   void Multiply(const Values& u, Values& y) const;
 
-  /// u^T Q u of each column.
+  /// y = K u, of the mesh alone with Free.
+  void MultiplyStiffness(const Values& u, Values& y) const;
+
+  /// u^T Q u of each column, without tension.
   Vector Squares(const Values& u) const;
 
 private:
   void TakeHessian(bool withNegativeCurvature);
-  void MultiplyStiffness(const Values& u, Values& y) const;
 
   const TriangleMesh& Mesh;
   const ParallelFor& Parallel;
