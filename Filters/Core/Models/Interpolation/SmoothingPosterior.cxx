@@ -26,7 +26,8 @@ SmoothingPosterior::SmoothingPosterior(
   const auto count = static_cast<double>(hasEnergy.count());
   const double square = hasEnergy.select(this->Parts.cwiseAbs2(), 0.0).sum();
   this->RootMeanSquare = std::sqrt(square / data.Weights.sum());
-  const double freedom = std::min(count, data.Count() - 1.0) + data.Repeats.sum();
+  const double held = std::max<Index>(1, spectrum.NumberOfHeld());
+  const double freedom = std::min(count, data.Count() - held) + data.Repeats.sum();
   if (!(noise > 0.0) && (freedom < 1.0 || !(square + data.Scatter.col(column).sum() > 0.0)))
   {
     return;
