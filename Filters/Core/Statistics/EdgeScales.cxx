@@ -27,7 +27,7 @@ constexpr double ShortestLength = 2.0;
 constexpr double UsualLength = 4.0;
 constexpr double LongestLength = 24.0;
 
-constexpr Index LargestSample = 3000;
+constexpr Index LargestSampleOfScales = 3000;
 constexpr int DiskRadius = 4; ///< in edges
 constexpr Eigen::Index SmallestDisk = 8;
 /// A disk has a jump if the variance of its residual is half a standard deviation above that of
@@ -38,7 +38,7 @@ constexpr double LargestBend = 0.12;
 constexpr double ShareWithoutJump = 0.7;
 constexpr double LargestQuantile = 0.9;
 
-constexpr double RoundOff = 1e-12; ///< relative variation that is no data
+constexpr double NoVariation = 1e-12; ///< relative variation that is no data
 
 /// A linear fit of the data on a disk.
 struct Fit
@@ -136,7 +136,7 @@ public:
       squaresOfAll += std::pow(all.Width(), 2);
       magnitude = std::max({ magnitude, std::abs(all.Low), std::abs(all.High) });
     }
-    const double negligible = RoundOff * magnitude;
+    const double negligible = NoVariation * magnitude;
     const double range =
       std::sqrt(squares) > negligible ? std::sqrt(squares) : std::sqrt(squaresOfAll);
     return range > negligible ? range : 0.0;
@@ -150,7 +150,7 @@ public:
     double area = 0.0, withoutJump = 0.0;
     Points offsets;
     Values deviations;
-    for (const Index i : this->Data.SampleVertices(LargestSample))
+    for (const Index i : this->Data.SampleVertices(LargestSampleOfScales))
     {
       this->ReadDisk(rings.FindDisk(i, DiskRadius), offsets, deviations);
       if (offsets.rows() >= SmallestDisk)
