@@ -16,7 +16,7 @@ namespace SurfaceDiffusion
 namespace
 {
 
-bool IsSet(const std::vector<char>& flags, std::size_t i)
+bool IsFlagged(const std::vector<char>& flags, std::size_t i)
 {
   return !flags.empty() && flags[i] != 0;
 }
@@ -55,11 +55,11 @@ SourceProjection::SourceProjection(SurfaceArrays arrays, const Surface& surface)
   for (Index row = 0; row < static_cast<Index>(all.rows()); ++row)
   {
     const Index t = ofInput[static_cast<std::size_t>(row)];
-    bool isExcluded = IsSet(this->Arrays.ExcludedTriangles, static_cast<std::size_t>(row));
+    bool isExcluded = IsFlagged(this->Arrays.ExcludedTriangles, static_cast<std::size_t>(row));
     for (int a = 0; a < 3; ++a)
     {
       isExcluded =
-        isExcluded || IsSet(this->Arrays.Excluded, static_cast<std::size_t>(all(row, a)));
+        isExcluded || IsFlagged(this->Arrays.Excluded, static_cast<std::size_t>(all(row, a)));
     }
     if (t >= 0 || isExcluded) // and not of zero area
     {
@@ -103,7 +103,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
   }
   for (Index i = 0; i < static_cast<Index>(shapes.Places.rows()); ++i)
   {
-    if (!IsSet(shapes.Hidden, static_cast<std::size_t>(i)) && !shapes.Places.row(i).allFinite())
+    if (!IsFlagged(shapes.Hidden, static_cast<std::size_t>(i)) && !shapes.Places.row(i).allFinite())
     {
       throw InputError(Sentence("a coordinate is not finite at point ")
         << i << " of the sources; allowed: finite coordinates");
@@ -117,7 +117,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     {
       progress.Report(static_cast<double>(i) / all);
     }
-    if (isOnLine[i] != 0 || IsSet(shapes.Hidden, i))
+    if (isOnLine[i] != 0 || IsFlagged(shapes.Hidden, i))
     {
       continue;
     }

@@ -17,7 +17,7 @@ namespace
 /// Angles that differ by less from pi and 2 pi are those. Windows bridge such gaps (see
 /// WindowFront.cxx).
 constexpr double AngleTolerance = 1e-11;
-const double Pi = std::acos(-1.0);
+const double HalfTurn = std::acos(-1.0);
 
 } // namespace
 
@@ -169,7 +169,7 @@ void EdgeFrames::ClassifyVertices()
       }
     }
     this->Closed[static_cast<std::size_t>(v)] = closed ? 1 : 0;
-    const double turn = closed ? 2.0 * Pi : Pi;
+    const double turn = closed ? 2.0 * HalfTurn : HalfTurn;
     Passing& passing = this->Passings[static_cast<std::size_t>(v)];
     passing = met != end - begin      ? Passing::All
       : total > turn + AngleTolerance ? Passing::Around

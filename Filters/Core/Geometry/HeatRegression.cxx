@@ -18,11 +18,11 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr int NumberOfSteps = 4;
+constexpr int StepsOfHeat = 4;
 
 double StepOfWidth(double fwhm)
 {
-  return fwhm * fwhm / (16.0 * std::log(2.0)) / NumberOfSteps;
+  return fwhm * fwhm / (16.0 * std::log(2.0)) / StepsOfHeat;
 }
 
 /// The columns of a matrix of moments: x, the six products of x, u, and the products of u with x.
@@ -92,11 +92,11 @@ double SmoothByHeat(const Assembler& assembler, double fwhm, Values& u, LinearSo
   assembler.Fill(matrix, mesh.ControlAreas(), dt, CotanWeights(mesh, parallel), nullptr, parallel);
   solver.SetMatrix(matrix, progress.Part(0.0, 0.5));
   double missed = 0.0;
-  for (int step = 0; step < NumberOfSteps; ++step)
+  for (int step = 0; step < StepsOfHeat; ++step)
   {
     const Values b = mesh.ControlAreas().asDiagonal() * u;
-    const double part = 0.5 + 0.5 * step / NumberOfSteps;
-    const SolveReport report = solver.Solve(b, u, progress.Part(part, part + 0.5 / NumberOfSteps));
+    const double part = 0.5 + 0.5 * step / StepsOfHeat;
+    const SolveReport report = solver.Solve(b, u, progress.Part(part, part + 0.5 / StepsOfHeat));
     RequireAnswer(report, solver.GetLimits());
     missed = std::max(missed, report.Converged ? 0.0 : report.Residual);
   }
@@ -125,7 +125,7 @@ LinearFits FitByHeat(const Assembler& assembler, const Points& positions,
   const double h = mesh.MeanEdgeLength();
   task.NumberOfVertices = n;
   task.DiffusionNumber = StepOfWidth(fwhm) / (h * h);
-  task.NumberOfSolves = NumberOfSteps;
+  task.NumberOfSolves = StepsOfHeat;
   task.NumberOfColumns = static_cast<int>(moments.cols());
   task.Tolerance = 1e-12; // the covariances are smaller than the moments by (fwhm/size)^2
   const auto solver = MakeSolver(SolverMethod::Automatic, task, parallel);

@@ -38,7 +38,7 @@ constexpr double LargestBend = 0.12;
 constexpr double ShareWithoutJump = 0.7;
 constexpr double LargestQuantile = 0.9;
 
-constexpr double RoundOff = 1e-12; ///< relative variation that is no data
+constexpr double NoVariation = 1e-12; ///< relative variation that is no data
 
 /// A linear fit of the data on a disk.
 struct Fit
@@ -136,7 +136,7 @@ public:
       squaresOfAll += std::pow(all.Width(), 2);
       magnitude = std::max({ magnitude, std::abs(all.Low), std::abs(all.High) });
     }
-    const double negligible = RoundOff * magnitude;
+    const double negligible = NoVariation * magnitude;
     const double range =
       std::sqrt(squares) > negligible ? std::sqrt(squares) : std::sqrt(squaresOfAll);
     return range > negligible ? range : 0.0;
