@@ -11,6 +11,7 @@
 #include "Run/DataPreparation.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -42,10 +43,19 @@ PointData DataOfColumns(const PointData& data, Eigen::Index first, Eigen::Index 
   return some;
 }
 
+/// Of a component that is held: beside so large a weight, solvers would miss the others' tolerance.
+constexpr double Held = std::numeric_limits<double>::infinity();
+
 void MultiplyFactors(PointData& data, const Eigen::Ref<const Vector>& by)
 {
+  for (Eigen::Index i = 0; i < by.size(); ++i)
+  {
+    data.Fixed[i] =
+      data.Fixed[i] || (by[i] == Held && data.FidelityFactor(static_cast<Index>(i)) > 0.0);
+  }
+  const Vector finite = (by.array() == Held).select(1.0, by);
   data.FidelityFactors =
-    data.FidelityFactors.size() > 0 ? Vector(data.FidelityFactors.cwiseProduct(by)) : Vector(by);
+    data.FidelityFactors.size() > 0 ? Vector(data.FidelityFactors.cwiseProduct(finite)) : finite;
 }
 
 /// Messages about several columns and components, of each kind the first, with the number of the
@@ -270,10 +280,11 @@ Vector ColumnSearch::Factors() const
   if (this->Parts.size() > 1)
   {
     factors.resize(this->Data.Given.rows());
+    const bool canHold = !this->Task.Blur && !this->Inputs.Cells;
     for (const Part& part : this->Parts)
     {
       factors.segment(part.Vertices.Begin, part.Vertices.Size())
-        .setConstant(part.Search.Trial() / this->Weight());
+        .setConstant(part.Noise == 0.0 && canHold ? Held : part.Search.Trial() / this->Weight());
     }
   }
   return factors;

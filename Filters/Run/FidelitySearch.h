@@ -34,7 +34,7 @@ struct FidelityWeights
   /// vertices.
   std::vector<double> OfColumns;
   /// n x as many: those of the other components over it, by which the fidelity factors of the data
-  /// are multiplied; no row if there is one component.
+  /// are multiplied, infinite in one that is held; no row if there is one component.
   Values Factors = {};
 
   /// The models with these weights.

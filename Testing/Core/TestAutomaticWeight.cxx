@@ -132,6 +132,31 @@ TEST(AutomaticWeight, LeavesConstantPartsOutOfTheNoise)
   }
 }
 
+// A part without noise is held, and the iterations of the other one are as exact as without it.
+TEST(AutomaticWeight, OfAPartWithoutNoiseLeavesTheOtherAlone)
+{
+  const Testing::Surface part = Testing::Icosphere(4);
+  const Noisy alone = MakeNoisy(part, std::vector<char>(part.Vertices.rows(), 1), 0.1, 0.0, true);
+  RunInput both(Testing::Joined(part, Testing::Moved(part, { 4.0, 0.0, 0.0 })));
+  both.Data.Data.Values.setConstant(5.0);
+  both.Data.Data.Values.topRows(part.Vertices.rows()) = alone.Input.Data.Data.Values;
+  HeatSettings heat;
+  heat.Mode = HeatMode::SteadyState;
+  heat.AutomaticFidelity = true;
+  heat.Solver = SolverMethod::ConjugateGradient;
+  SurfaceDiffusion::Run run(SerialFor());
+  SurfaceDiffusion::Run runOfBoth(SerialFor());
+  const Values u = StateOf(run, { alone.Input.Block() }, heat);
+  const Values uOfBoth = StateOf(runOfBoth, { both.Block() }, heat);
+  for (Index i = 0; i < part.NumberOfVertices(); ++i)
+  {
+    const Index v = runOfBoth.GetBlock(0).Surface->VertexOf(i);
+    const Index held = runOfBoth.GetBlock(0).Surface->VertexOf(i + part.NumberOfVertices());
+    EXPECT_NEAR(uOfBoth(v, 0), u(run.GetBlock(0).Surface->VertexOf(i), 0), 1e-7);
+    EXPECT_EQ(uOfBoth(held, 0), 5.0);
+  }
+}
+
 TEST(AutomaticWeight, KeepsMasksAndSpikesAndSaysSo)
 {
   const Testing::Surface s = Testing::Icosphere(4);
