@@ -139,6 +139,8 @@ class Checks(unittest.TestCase):
         self.assertEqual(result_of("100% tests passed, 0 tests failed out of 12\n"), "12 tests pass")
         self.assertEqual(result_of("stat::number_of_executed_units: 345\n"), "345 runs without a finding")
         self.assertEqual(result_of("4 pages, 56 links, 0 broken\n"), "4 pages, 56 links, none broken")
+        self.assertEqual(result_of("7 bounds in 6 builds; 0 of round-off are used by more than 0.3\n"),
+                         "7 bounds in 6 builds, none of round-off used by more than 0.3")
 
 
 if __name__ == "__main__":
