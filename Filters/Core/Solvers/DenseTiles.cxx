@@ -40,7 +40,10 @@ struct Lanes
 };
 #endif
 
-} // namespace
+// The choice of a width is a symbol that -fvisibility does not hide: it would be that of the program
+// where a library and the program that loads it both contain the function, so these have none.
+namespace ForWidth
+{
 
 // The tiles stay in registers over all of the depth.
 SURFACEDIFFUSION_ANY_VECTORS void SubtractTileProducts(const double* a, std::ptrdiff_t strideA,
@@ -125,6 +128,31 @@ SURFACEDIFFUSION_ANY_VECTORS void SolveTriangle(
     row = row * (1.0 / l[j * TileRows + j]);
     std::memcpy(w + j * TileRows, &row, sizeof(Lanes));
   }
+}
+
+} // namespace ForWidth
+
+} // namespace
+
+void SubtractTileProducts(const double* a, std::ptrdiff_t strideA, const double* b, Index depth,
+  double* c, std::ptrdiff_t strideC, Index count, Index width)
+{
+  ForWidth::SubtractTileProducts(a, strideA, b, depth, c, strideC, count, width);
+}
+
+void SolveTiles(const double* l, Index width, double* c, std::ptrdiff_t stride, Index count)
+{
+  ForWidth::SolveTiles(l, width, c, stride, count);
+}
+
+void SubtractTransposedProduct(const double* a, Index depth, const double* b, double* c)
+{
+  ForWidth::SubtractTransposedProduct(a, depth, b, c);
+}
+
+void SolveTriangle(const double* l, Index width, bool transposed, double* w)
+{
+  ForWidth::SolveTriangle(l, width, transposed, w);
 }
 
 PivotCounts FactorizeTile(double* l, Index width, const double* smallest)
