@@ -346,9 +346,14 @@ bool RunInterpolation(
           array->middleRows(array->rows() > 0 ? begin : 0, array->rows() > 0 ? size : 0);
         for (Eigen::Index k = 0; k < part.cols(); ++k)
         {
-          const bool isNaN = part.col(k).array().isNaN().all();
-          const bool mayBeNaN = !isKnown || (array == &found.Error && found.HasUnknownError);
-          Require((isKnown && part.col(k).allFinite()) || (mayBeNaN && isNaN),
+          const bool isError = array == &found.Error;
+          const bool mayBeNaN = !isKnown || (isError && found.HasUnknownError);
+          const bool mayBeInfinite = isError && found.HasInfiniteError;
+          const auto isOpen = part.col(k).array().isInf();
+          const bool isFinite = (isOpen || part.col(k).array().isFinite()).all();
+          const bool isNaN = (isOpen || part.col(k).array().isNaN()).all();
+          Require(
+            ((isKnown && isFinite) || (mayBeNaN && isNaN)) && (mayBeInfinite || !isOpen.any()),
             "an interpolation is not finite, or known without a value");
         }
       }

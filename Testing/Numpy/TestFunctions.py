@@ -526,7 +526,7 @@ class Results(unittest.TestCase):
         self.assertIs(type(found), np.ndarray)
         states, words = old(sd.harmonic_map, self.surface, steps=True)
         self.assertEqual(words, "steps of harmonic_map() is deprecated: call harmonic_map_steps()")
-        self.assertEqual([state.step for state in states], list(range(11)))
+        self.assertEqual([state.step for state in states], list(range(4)))
         found, words = old(sd.denoise_mesh, self.surface, full_output=True)
         np.testing.assert_array_equal(found.points, sd.denoise_mesh(self.surface).points)
         found, words = old(sd.derivatives, self.surface, self.values, quantity="ConductionVelocity",

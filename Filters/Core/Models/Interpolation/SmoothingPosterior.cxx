@@ -21,7 +21,7 @@ SmoothingPosterior::SmoothingPosterior(
       data.Weights.cwiseSqrt().cwiseProduct(data.Given.col(column)))
   , Middle(spectrum.Start())
 {
-  constexpr double resolved = 1e-8; // difference of an eigenvalue from 1
+  constexpr double resolved = 1e-4; // difference of an eigenvalue from 1, as in NumberOfHeld()
   const Flags hasEnergy = spectrum.Eigenvalues(this->Middle).array() < 1.0 - resolved;
   const auto count = static_cast<double>(hasEnergy.count());
   const double square = hasEnergy.select(this->Parts.cwiseAbs2(), 0.0).sum();
