@@ -21,13 +21,16 @@ SmoothingPosterior::SmoothingPosterior(
       data.Weights.cwiseSqrt().cwiseProduct(data.Given.col(column)))
   , Middle(spectrum.Start())
 {
-  constexpr double resolved = 1e-4; // difference of an eigenvalue from 1, as in NumberOfHeld()
-  const Flags hasEnergy = spectrum.Eigenvalues(this->Middle).array() < 1.0 - resolved;
+  constexpr double resolved = 1e-8; // difference of an eigenvalue from 1
+  const Vector eigenvalues = spectrum.Eigenvalues(this->Middle);
+  Flags hasEnergy = eigenvalues.array() < 1.0 - resolved;
+  Eigen::Index flattest = 0; // the constants, which needles give an energy of round-off
+  eigenvalues.maxCoeff(&flattest);
+  hasEnergy[flattest] = false;
   const auto count = static_cast<double>(hasEnergy.count());
   const double square = hasEnergy.select(this->Parts.cwiseAbs2(), 0.0).sum();
   this->RootMeanSquare = std::sqrt(square / data.Weights.sum());
-  const double held = std::max<Index>(1, spectrum.NumberOfHeld());
-  const double freedom = std::min(count, data.Count() - held) + data.Repeats.sum();
+  const double freedom = count + data.Repeats.sum();
   if (!(noise > 0.0) && (freedom < 1.0 || !(square + data.Scatter.col(column).sum() > 0.0)))
   {
     return;
