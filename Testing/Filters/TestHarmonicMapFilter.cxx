@@ -587,7 +587,13 @@ TEST(HarmonicMapFilter, MoveVerticesDenoisesTheSurface)
 
 TEST(HarmonicMapFilter, AChangeOfTheVolumeIsAWarningWhileThePointsMove)
 {
-  auto filter = MakeFilter(Sphere(1));
+  auto ellipsoid = Sphere(1);
+  for (vtkIdType i = 0; i < ellipsoid->GetNumberOfPoints(); ++i)
+  {
+    const double* const p = ellipsoid->GetPoint(i);
+    ellipsoid->GetPoints()->SetPoint(i, 3.0 * p[0], p[1], 0.5 * p[2]);
+  }
+  auto filter = MakeFilter(ellipsoid);
   filter->SetTimeStep(1.0);
   Messages messages(filter);
   filter->Update();

@@ -53,7 +53,7 @@ const std::map<std::string, int> LargestNumbers = {
   { "HarmonicMoved", 60 },
   { "HarmonicLines", 60 },
   // A step is several of them.
-  { "HarmonicMinimizing", 400 },
+  { "HarmonicMinimizing", 200 },
   // One solve for u and one for v.
   { "MumfordShah", 60 },
   { "MumfordShahOfCells", 60 },

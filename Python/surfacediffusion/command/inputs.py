@@ -111,6 +111,8 @@ def make_solver(arguments, surface: SurfaceFile, areas):
     once for many files, and keeps its factors."""
     solvers = vars(arguments).setdefault("solvers", {})
     try:
+        if areas is None:
+            return surface.solver
         if id(surface) not in solvers:
             solvers[id(surface)] = Surface(surface.points, surface.faces, areas)
     except ValueError as error:
@@ -411,7 +413,7 @@ def require_finite(values, data, part, columns):
 def vertex_areas(surface: SurfaceFile, excluded=None, given=None):
     """The areas of the barycentric control cells (n,): a third of those of the triangles. Triangles
     with an excluded corner take no part. given: the areas of whole cells in place of the true ones."""
-    solver = Surface(surface.points, surface.faces)
+    solver = surface.solver
     areas = solver._triangle_areas(excluded)
     if given is not None:
         whole = solver._triangle_areas()
@@ -421,5 +423,5 @@ def vertex_areas(surface: SurfaceFile, excluded=None, given=None):
 
 def face_areas(surface: SurfaceFile):
     """The areas of the faces (m,)."""
-    solver = Surface(surface.points, surface.faces)
+    solver = surface.solver
     return np.bincount(solver._core.faces(), solver._areas_of_triangles(), minlength=len(surface.faces))

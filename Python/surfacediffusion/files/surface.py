@@ -3,6 +3,7 @@
 """Reads and writes surfaces: read_surface() and SurfaceFile."""
 from __future__ import annotations
 
+import functools
 import os
 import tempfile
 import warnings
@@ -54,6 +55,13 @@ class SurfaceFile:
         words = os.path.basename(self.path).lower().split(".") if self.kind in ("freesurfer", "asc") else []
         found = [shape for word, shape in _SHAPES.items() if word in words[1:]]
         return found[0] if found else ""
+
+    @functools.cached_property
+    def solver(self):
+        """The surface for functions of the package. It is made once, and keeps its factors."""
+        from .._surface import Surface
+
+        return Surface(self.points, self.faces)
 
     @property
     def center(self):
