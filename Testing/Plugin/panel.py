@@ -61,7 +61,7 @@ VALUES = {
     "FixedArray": (["POINTS", "ends"], ["CELLS", "spots"]),
     "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (0.2, 0.5),
     "DiffusionRateArray": (["CELLS", "rates"],), "FidelityArray": (["POINTS", "weight"],),
-    "BlurFWHM": (0.0, 0.3), "SpeedArray": (["POINTS", "weight"], ["CELLS", "spots"], ["POINTS", ""]),
+    "BlurFWHM": (0.0, 0.3), "SpeedArray": (["POINTS", "weight"], ["CELLS", "speed"], ["POINTS", ""]),
     "SourceTimes": (["POINTS", "f"],),
 }
 
@@ -107,6 +107,7 @@ def sphere_with_arrays():
     add(data.GetPointData(), "east", np.tile([1.0, 0.0, 0.0], (len(points), 1)))
     add(data.GetCellData(), "g", np.cos(np.arange(cells)))
     add(data.GetCellData(), "spots", np.arange(cells) % 7 == 0)
+    add(data.GetCellData(), "speed", 1 + np.arange(cells) % 2)  # no barriers, which may hold all sources
     add(data.GetCellData(), "up", np.tile([0.0, 0.0, 1.0], (cells, 1)))
     add(data.GetCellData(), "rates", np.tile([21.0, 21.0, 2.6, 2.6], (cells, 1)))
     source = servermanager.sources.TrivialProducer()
