@@ -12,7 +12,7 @@ from ..files.content import check_output_name
 from . import common, inputs, values
 from .report import number
 from .stages import (
-    change_data, columns_of_arrays, given, read_surface_for_output, solid, write_new, write_points)
+    change_data, columns_of_arrays, given, read_surface_for_output, write_new, write_points)
 
 MESH = f"""
 {common.SURFACES}
@@ -88,7 +88,7 @@ def denoise_mesh(arguments, report):
         with report.timed("read"):
             options["fixed"] = dict(inputs.read_marks(arguments.fixed, {"": surface}))[id(surface)]
     with report.working("Denoising") as progress:
-        result = remove_noise(solid(surface), progress=progress, **options)
+        result = remove_noise(surface.solver, progress=progress, **options)
     write_points(arguments, report, surface, result, _denoising_text(result))
     report.add_numbers(result, "noise_level", "correlation_length", "mean_displacement",
                        "maximum_displacement", "volume_before", "volume_after", "mean_edge_length")
@@ -135,7 +135,7 @@ def normals(arguments, report):
     options = given(time_step=arguments.time_step, number_of_time_steps=arguments.steps,
                     **common.merging(arguments))
     with report.working("Normals") as progress:
-        result = harmonic_map(solid(surface), exponent=arguments.exponent, move_vertices=arguments.move,
+        result = harmonic_map(surface.solver, exponent=arguments.exponent, move_vertices=arguments.move,
                               progress=progress, **options)
     report.facts.update(exponent=arguments.exponent, moved=arguments.move, steps=result.step)
     if not arguments.move:

@@ -11,7 +11,7 @@ from ..files import FileError, new_data
 from ..files.content import read_content
 from . import common, inputs, values
 from .report import number
-from .stages import read_surface_for_output, solid, write_new
+from .stages import read_surface_for_output, write_new
 
 SOURCES = f"""
 SOURCES: GIFTI, FreeSurfer (.label, curv, .mgh, ...), NumPy (.npy), text (.txt), or a PLY or VTK file with
@@ -61,7 +61,7 @@ def distance(arguments, report):
             speed = inputs.read_values(arguments.speed, surface, tables=False)[1][:, 0]
     target = new_data(surface, arguments.output, names)
     nearest = arguments.nearest and new_data(surface, arguments.nearest, names)
-    solver = solid(surface)
+    solver = surface.solver
     with report.working("Distance") as progress:
         results = [nearest_sources(solver, places, speed=speed, method=arguments.method, progress=progress)
                    for places in sets]
@@ -130,7 +130,7 @@ def derivatives(arguments, report):
     word = arguments.quantity.capitalize()
     options = {"on_faces": False, "smoothing_fwhm": arguments.fwhm, **common.merging(arguments)}
     with report.working(word) as progress:
-        solver = solid(surface)
+        solver = surface.solver
         if arguments.quantity == "velocity":
             result = np.column_stack(conduction_velocity(solver, data, progress=progress, **options))
         else:

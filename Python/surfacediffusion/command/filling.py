@@ -12,7 +12,7 @@ from ..files.content import check_output_folder
 from . import common, inputs
 from .report import number, number_text
 from .stages import (
-    change_data, columns_of_arrays, columns_of_missing, given, read_surface_for_output, solid)
+    change_data, columns_of_arrays, columns_of_missing, given, read_surface_for_output)
 
 POINTS = f"""
 {common.SURFACES}
@@ -97,7 +97,7 @@ def interpolate(arguments, report):
     errors = new_data(surface, arguments.error, names) if arguments.error else None
     with report.working("Interpolation") as progress:
         result = fit(
-            solid(surface), values, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
+            surface.solver, values, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
             correlation_length=arguments.length or 0.0, boundary="Natural" if arguments.flat else "Automatic",
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
             compute_error=errors is not None, progress=progress, **given(smoothing=arguments.smoothing),

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import Surface
 from .._refinement import mean_edge_length
 from ..files import FileError, read_data, read_surface
 from ..files.content import read_content
@@ -55,7 +54,7 @@ def _surface_info(surface):
 
 
 def _measure(surface):
-    solver = Surface(surface.points, surface.faces)
+    solver = surface.solver
     return {"format": surface.kind, "points": solver.n_points, "faces": solver.n_faces,
             "structure": surface.structure, "area": number(solver.area),
             "mean_edge_length": number(mean_edge_length([solver._core]))}

@@ -13,7 +13,7 @@ from . import common, inputs, values
 from .printing import MAXIMUM_TRIANGLES_OF_PARTS, PATTERNS, edge_of_triangles, in_coordinates
 from .printing import is_for_printing, print_texture, reaction_of_pattern
 from .report import number
-from .stages import given, read_surface_for_output, require_array, solid, write_array, write_new
+from .stages import given, read_surface_for_output, require_array, write_array, write_new
 
 REFINE = """
 The name of OUTPUT gives its format: .ply, .off, .obj, .stl or .3mf. NEW is .npy: a row per vertex of OUTPUT,
@@ -56,14 +56,14 @@ def refine(arguments, report):
         require_array(new, "data of the new vertices")
     with report.timed("read"):
         surface = read_surface(arguments.surface)
-        shortest = edge_of_triangles(solid(surface), MAXIMUM_TRIANGLES)
+        shortest = edge_of_triangles(surface.solver, MAXIMUM_TRIANGLES)
         if arguments.maximum_triangles is None and arguments.length < shortest:
             raise inputs.ArgumentProblem(
                 f"LENGTH is {arguments.length:g}, for which the surface needs more than {MAXIMUM_TRIANGLES} "
                 f"triangles; allowed: {1.01 * shortest:.3g} or more, or --maximum-triangles")
         columns = [inputs.read_values(path, surface, tables=False)[1] for path, _ in arguments.data]
     with report.working("Refinement") as progress:
-        fine = bisect(solid(surface), arguments.length, progress=progress,
+        fine = bisect(surface.solver, arguments.length, progress=progress,
                       maximum_number_of_triangles=arguments.maximum_triangles or MAXIMUM_TRIANGLES)
     report.facts.update(longest_edge=number(fine.longest_edge), vertices=fine.surface.n_points,
                         triangles=fine.surface.n_faces)
@@ -138,7 +138,7 @@ def texture(arguments, report):
     if arguments.pattern:
         options.update(reaction_of_pattern(arguments.pattern))
     with report.working("Texture") as progress:
-        result = turing_texture(solid(surface), progress=progress, feature_size=size, seed=arguments.seed,
+        result = turing_texture(surface.solver, progress=progress, feature_size=size, seed=arguments.seed,
                                 refine_to=0, **options)
     report.facts.update(feature_size=size, seed=arguments.seed, steps=result.step,
                         wavelength=number(result.wavelength))

@@ -124,7 +124,7 @@ def edge_of_triangles(surface, count):
 
 def welded(surface):
     """Vertices at the same place are one: files for viewers have one per face."""
-    faces = Surface(surface.points, surface.faces).triangles
+    faces = surface.solver.triangles
     points, numbers = np.unique(np.asarray(surface.points, dtype=float) + 0.0, axis=0,
                                 return_inverse=True)
     return Surface(points, numbers.reshape(-1)[faces])

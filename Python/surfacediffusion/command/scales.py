@@ -10,7 +10,7 @@ from .. import scale_filter as separate
 from .. import spectrum as measure
 from . import common, inputs
 from .report import number, number_text
-from .stages import change_data, columns_of_missing, read, require_known, solid
+from .stages import change_data, columns_of_missing, read, require_known
 
 
 def add_fwhm(commands):
@@ -29,7 +29,7 @@ def fwhm(arguments, report):
     for patch in patches:
         known = ~(patch.excluded | np.isnan(patch.values).any(axis=1))
         with report.timed("compute"):
-            result = estimate_fwhm(solid(patch.surface), patch.values, mask=~known)
+            result = estimate_fwhm(patch.surface.solver, patch.values, mask=~known)
         entry = {"surface": patch.surface.path, "structure": patch.part.structure,
                  "pooled": number(result.pooled),
                  "columns": [{"name": data.names[c], "fwhm": number(width)}

@@ -11,7 +11,7 @@ from ..files import FileError, new_data, vtk_files, write_atomically
 from ..files.content import kind_of_name
 from . import common
 from .report import number
-from .stages import read_surface_for_output, solid, write_array, write_new
+from .stages import read_surface_for_output, write_array, write_new
 
 
 def add_directions(commands):
@@ -35,7 +35,7 @@ def directions(arguments, report):
         raise FileError(f"{arguments.output}: the name announces no format for directions on "
                         "faces; allowed: .npy, or .vtk, .vtp or .vtu as the surface")
     with report.working("Directions") as progress:
-        field = direction_field(solid(surface), method=arguments.method, progress=progress,
+        field = direction_field(surface.solver, method=arguments.method, progress=progress,
                                 **common.merging(arguments))
     report.facts.update(method=arguments.method, faces=len(surface.faces))
     with report.timed("write"):
@@ -66,7 +66,7 @@ def curvature(arguments, report):
     target = new_data(surface, arguments.output,
                       ["mean", "gaussian", "k1", "k2", "shape_index", "curvedness"])
     with report.working("Curvature") as progress:
-        found = measure(solid(surface), fwhm=arguments.fwhm, progress=progress,
+        found = measure(surface.solver, fwhm=arguments.fwhm, progress=progress,
                         **common.merging(arguments))
     report.facts.update(fwhm=arguments.fwhm, mean_edge_length=number(found.mean_edge_length),
                         mean_curvature=number(found.mean.mean()))

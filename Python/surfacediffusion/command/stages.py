@@ -9,7 +9,6 @@ import io
 import numpy as np
 
 from .._run import part_of
-from .._surface import Surface
 from ..files import FileError, new_data, read_data, read_surface, vtk_files, write_atomically
 from ..files.content import check_output_folder, check_range, kind_of_name
 from . import common, inputs
@@ -157,11 +156,6 @@ def read_surface_for_output(arguments, report, lengths=False):
             inputs.lengths_of(surface)
     report.facts.update(surface=arguments.surface, output=arguments.output)
     return surface
-
-
-def solid(surface):
-    """The surface of a file for functions of the package."""
-    return Surface(surface.points, surface.faces)
 
 
 def given(**options):
