@@ -252,7 +252,6 @@ struct Element
   std::string Name, Content;
   Attributes Given;
   std::size_t End = 0;
-  bool IsEmpty = false;
 
   std::string Take(const std::string& name, const std::string& otherwise = {}) const
   {
@@ -341,7 +340,6 @@ private:
     const std::string& text = this->Source;
     Element element;
     element.End = text.find('>', at) + 1;
-    element.IsEmpty = text[element.End - 2] == '/';
     std::size_t next = text.find_first_of(" \n/>", at + 2);
     element.Name = text.substr(at + 1, next - at - 1);
     for (std::size_t quote = text.find('"', next); quote < element.End;
@@ -353,7 +351,7 @@ private:
         text.substr(quote + 1, close - quote - 1);
       next = close + 1;
     }
-    if (!element.IsEmpty &&
+    if (text[element.End - 2] != '/' &&
       (element.Name == "Setting" || element.Name == "Array" || element.Name == "Information"))
     {
       const std::string end = "</" + element.Name + ">";

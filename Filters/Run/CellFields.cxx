@@ -18,11 +18,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-bool IsSet(const std::vector<char>& flags, Index i)
-{
-  return !flags.empty() && flags[static_cast<std::size_t>(i)] != 0;
-}
-
 /// Call f(cell, vertex) for the corners of the participating triangles.
 template <typename F>
 void ForEachCorner(const Surface& surface, const Fields& fields, const F& f)

@@ -99,8 +99,8 @@ BlockInput DerivativesRun::WithoutMissing(const BlockInput& input)
           fields.DataName, "is infinite", fields.Data.OnCells, i, "allowed: finite values and NaN");
       }
       // What the mask leaves out does not matter.
-      const bool isMasked = fields.Mask.OnCells == fields.Data.OnCells &&
-        !fields.Mask.Values.empty() && fields.Mask.Values[i] != 0;
+      const bool isMasked =
+        fields.Mask.OnCells == fields.Data.OnCells && IsSet(fields.Mask.Values, i);
       this->MissingRows[i] = !isMasked && values.row(i).hasNaN();
       isAny = isAny || this->MissingRows[i];
     }

@@ -12,11 +12,6 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-} // namespace
-
 void DistanceSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Choice({ "Method", "",

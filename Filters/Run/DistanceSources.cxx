@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/DisjointSets.h"
 #include "Core/Foundation/RobustRange.h"
+#include "Run/Located.h"
 #include "Run/Sentence.h"
 
 #include <algorithm>
@@ -15,11 +16,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-bool IsFlagged(const std::vector<char>& flags, std::size_t i)
-{
-  return !flags.empty() && flags[i] != 0;
-}
 
 } // namespace
 
@@ -55,11 +51,11 @@ SourceProjection::SourceProjection(SurfaceArrays arrays, const Surface& surface)
   for (Index row = 0; row < static_cast<Index>(all.rows()); ++row)
   {
     const Index t = ofInput[static_cast<std::size_t>(row)];
-    bool isExcluded = IsFlagged(this->Arrays.ExcludedTriangles, static_cast<std::size_t>(row));
+    bool isExcluded = IsSet(this->Arrays.ExcludedTriangles, static_cast<std::size_t>(row));
     for (int a = 0; a < 3; ++a)
     {
       isExcluded =
-        isExcluded || IsFlagged(this->Arrays.Excluded, static_cast<std::size_t>(all(row, a)));
+        isExcluded || IsSet(this->Arrays.Excluded, static_cast<std::size_t>(all(row, a)));
     }
     if (t >= 0 || isExcluded) // and not of zero area
     {
@@ -103,7 +99,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
   }
   for (Index i = 0; i < static_cast<Index>(shapes.Places.rows()); ++i)
   {
-    if (!IsFlagged(shapes.Hidden, static_cast<std::size_t>(i)) && !shapes.Places.row(i).allFinite())
+    if (!IsSet(shapes.Hidden, static_cast<std::size_t>(i)) && !shapes.Places.row(i).allFinite())
     {
       throw InputError(Sentence("a coordinate is not finite at point ")
         << i << " of the sources; allowed: finite coordinates");
@@ -117,7 +113,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     {
       progress.Report(static_cast<double>(i) / all);
     }
-    if (isOnLine[i] != 0 || IsFlagged(shapes.Hidden, i))
+    if (isOnLine[i] != 0 || IsSet(shapes.Hidden, i))
     {
       continue;
     }

@@ -9,7 +9,6 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace SurfaceDiffusion
@@ -70,9 +69,9 @@ Shift FindShift(const Points& places, const Surface& surface)
   return best;
 }
 
-/// The warning; empty if no point is far. places: one row for each distance.
+/// The warning; empty if no point is far.
 Sentence DescribeDistances(
-  const Points& places, const std::vector<double>& distances, const Surface& surface)
+  const KnownValues& known, double median, double largest, const Surface& surface)
 {
   constexpr double edges = 5.0;
   constexpr double least = 0.02; // of the diagonal
@@ -80,25 +79,24 @@ Sentence DescribeDistances(
   const double diagonal = DiagonalOf(surface.Points(), Reduction::Serial());
   const double edge = surface.Mesh().MeanEdgeLength() * surface.Mesh().LengthUnit();
   const double reach = std::min(std::max(edges * edge, least * diagonal), most * diagonal);
+  const std::vector<double>& distances = known.SampleDistances;
   const auto far = std::count_if(
     distances.begin(), distances.end(), [&](double distance) { return distance > reach; });
   if (far == 0)
   {
     return {};
   }
-  std::vector<double> sorted = distances;
-  const double median = Median(sorted);
   Sentence text = DescribeFarPoints("points with values", median, diagonal);
   text << (text.Words().empty() ? "" : ": ") << far << " of " << distances.size()
        << (far == 1 ? " points with values is" : " points with values are") << " farther than "
        << reach << " from the surface, which is " << diagonal << " large; median distance "
-       << median << ", largest " << *std::max_element(distances.begin(), distances.end());
+       << median << ", largest " << largest;
   constexpr std::size_t fewest = 8; // for three unknowns
   constexpr double share = 0.2; // of the distance, which a shift leaves
   if (surface.Mesh().NumberOfTriangles() > 0 && distances.size() >= fewest &&
     2 * static_cast<std::size_t>(far) > distances.size())
   {
-    const Shift shift = FindShift(places, surface);
+    const Shift shift = FindShift(known.SamplePlaces, surface);
     if (shift.MedianDistance < share * median)
     {
       text << "; a shift by (" << shift.By[0] << ", " << shift.By[1] << ", " << shift.By[2]
@@ -111,32 +109,19 @@ Sentence DescribeDistances(
 } // namespace
 
 void ReportDistances(
-  const Surface& surface, const Fields& fields, double maximumDistance, RunResult& result)
+  const Surface& surface, const KnownValues& known, double maximumDistance, RunResult& result)
 {
-  std::vector<double> distances;
-  Points places(fields.Samples ? fields.Samples->Places.rows() : 0, 3);
-  for (std::size_t i = 0; fields.Samples && i < fields.Projected->size(); ++i)
-  {
-    const ProjectedSample& sample = (*fields.Projected)[i];
-    if (sample.Coordinates != std::array<double, 3>()) // it has a value
-    {
-      places.row(static_cast<Eigen::Index>(distances.size())) =
-        fields.Samples->Places.row(static_cast<Eigen::Index>(i));
-      distances.push_back(sample.Distance);
-    }
-  }
-  places.conservativeResize(static_cast<Eigen::Index>(distances.size()), 3);
-  if (maximumDistance == 0.0 && !distances.empty())
-  {
-    const Sentence text = DescribeDistances(places, distances, surface);
-    if (!text.Words().empty())
-    {
-      result.WarnOnce(text);
-    }
-  }
-  const double largest =
-    distances.empty() ? 0.0 : *std::max_element(distances.begin(), distances.end());
+  std::vector<double> sorted = known.SampleDistances;
+  const double median = Median(sorted);
+  const double largest = sorted.empty() ? 0.0 : *std::max_element(sorted.begin(), sorted.end());
+  result.AddNumber("MedianDistance", median);
   result.Numbers.push_back(Output::OfNumber("LargestDistance", largest, Combination::Largest));
+  const Sentence text =
+    maximumDistance == 0.0 ? DescribeDistances(known, median, largest, surface) : Sentence();
+  if (!text.Words().empty())
+  {
+    result.WarnOnce(text);
+  }
 }
 
 } // namespace SurfaceDiffusion

@@ -14,11 +14,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-bool IsSet(const std::vector<char>& flags, Eigen::Index i)
-{
-  return !flags.empty() && flags[static_cast<std::size_t>(i)] != 0;
-}
-
 /// The labels of the cells around each vertex, if they are the same or 0.
 std::vector<Index> MakeSeedsOfCells(const Surface& surface, const Fields& fields)
 {

@@ -72,9 +72,7 @@ struct Fields
   /// Whether the value of a row is left out, unless it is fixed.
   bool IsLeftOut(Eigen::Index row, bool inpaint) const
   {
-    const auto isSet = [row](const std::vector<char>& flags)
-    { return !flags.empty() && flags[static_cast<std::size_t>(row)] != 0; };
-    return (inpaint && isSet(this->Mask.Values)) || isSet(this->Weightless);
+    return (inpaint && IsSet(this->Mask.Values, row)) || IsSet(this->Weightless, row);
   }
 
   bool HasCells() const

@@ -5,6 +5,7 @@
 #include "Core/Models/Interpolation/InterpolationModel.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Run/CorrelatedNoise.h"
+#include "Run/FarPoints.h"
 #include "Run/ModelInputs.h"
 
 #include <algorithm>
@@ -279,7 +280,7 @@ std::unique_ptr<Model> InterpolationSettings::Make(ModelInputs& inputs, RunResul
     "NumberOfValues", known.Values.Count(), Combination::Sum, OutputType::Integer));
   result.Numbers.push_back(
     Output::OfNumber("NumberOfFarValues", known.TooFar, Combination::Sum, OutputType::Integer));
-  result.AddNumber("MedianDistance", known.MedianDistance);
+  ReportDistances(inputs.Surface, known, this->MaximumDistance, result);
   const TriangleMesh& mesh = inputs.Surface.Mesh();
   const CornerWeights isotropic = CotanWeights(mesh, inputs.Parallel);
   CornerWeights coefficients = this->IsDirected()

@@ -22,11 +22,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-bool IsSet(const std::vector<char>& flags, std::size_t i)
-{
-  return !flags.empty() && flags[i] != 0;
-}
-
 bool Counts(const PointSamples& samples, std::size_t i)
 {
   return !samples.Given.row(static_cast<Eigen::Index>(i)).hasNaN() &&
@@ -328,7 +323,7 @@ KnownValues FindKnownValues(
     const PointSamples& samples = *fields.Samples;
     known.AreSamples = true;
     known.SamplesName = samples.Name;
-    std::vector<double> distances;
+    known.SamplePlaces.resize(samples.Places.rows(), 3);
     for (std::size_t i = 0; i < fields.Projected->size(); ++i)
     {
       const ProjectedSample& sample = (*fields.Projected)[i];
@@ -336,7 +331,9 @@ KnownValues FindKnownValues(
       {
         continue;
       }
-      distances.push_back(sample.Distance);
+      known.SamplePlaces.row(static_cast<Eigen::Index>(known.SampleDistances.size())) =
+        samples.Places.row(static_cast<Eigen::Index>(i));
+      known.SampleDistances.push_back(sample.Distance);
       if (!IsWithin(sample, maximumDistance))
       {
         ++known.TooFar;
@@ -359,7 +356,8 @@ KnownValues FindKnownValues(
       collector.Add(
         place, static_cast<Eigen::Index>(i), samples.Weights.empty() ? 1.0 : samples.Weights[i]);
     }
-    known.MedianDistance = Median(distances);
+    known.SamplePlaces.conservativeResize(
+      static_cast<Eigen::Index>(known.SampleDistances.size()), 3);
     known.Values = collector.Take(samples.Given);
     return known;
   }

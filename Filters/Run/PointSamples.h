@@ -47,7 +47,8 @@ struct KnownValues
 {
   ScatteredValues Values; ///< in units of the numerics
   Index TooFar = 0; ///< samples beyond the largest distance
-  double MedianDistance = 0.0; ///< of the samples, in coordinate units
+  Points SamplePlaces; ///< of the samples that have a value
+  std::vector<double> SampleDistances; ///< their distances from the surface, in coordinate units
   Index Outside = 0; ///< samples in excluded triangles
   std::string SamplesName; ///< empty unless they are samples
   bool AreSamples = false;

@@ -4,7 +4,6 @@
 
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
-#include "Run/FarPoints.h"
 #include "Run/LinearLight.h"
 #include "Run/MeanPartArea.h"
 #include "Run/Sentinels.h"
@@ -231,10 +230,9 @@ void Run::MakeModel(
   {
     inputs.Known = FindKnownValues(*block.Surface, fields,
       this->Settings->MaskMode == MaskMode::Inpaint, block.Units.ValueUnit, wanted.MaximumDistance);
-    ReportDistances(*block.Surface, fields, wanted.MaximumDistance, block.Result);
   }
   progress.Report(0.2);
-  AskForSentinels(fields, block.Result);
+  AskForSentinels(*block.Surface, fields, processes, block.Result);
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
   const ModelTraits traits = this->Settings->DescribeModel();
   block.HoldsDetail = traits.NeedsCellDetail();

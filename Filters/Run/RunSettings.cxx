@@ -222,8 +222,9 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
   visitor.Switch({ "AutomaticFidelity", "",
                    "Choose the fidelity weight by the discrepancy principle (Morozov 1966): the "
                    "result differs from the data by the noise level, where the data are not "
-                   "constant. Each component of the data and each connected component of the "
-                   "surface has a weight of its own. FidelityWeight is ignored." },
+                   "constant. Each component of the data that is not coupled with the others and "
+                   "each connected component of the surface has a weight of its own. "
+                   "FidelityWeight is ignored." },
     automatic);
   visitor.Number({ "NoiseLevel", "values",
                    "Standard deviation of the noise for AutomaticFidelity, in the unit of the "

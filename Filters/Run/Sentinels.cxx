@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Sentinels.h"
 
-#include <algorithm>
+#include "Core/Foundation/RobustRange.h"
+#include "Run/Surface.h"
+
 #include <array>
 #include <cmath>
 
@@ -35,22 +37,23 @@ std::size_t SentinelOf(double value)
 
 } // namespace
 
-void AskForSentinels(const Fields& fields, RunResult& result)
+void AskForSentinels(
+  const Surface& surface, const Fields& fields, const Reduction& processes, RunResult& result)
 {
   const PointSamples* const samples = fields.Samples.get();
   const Values& values = samples ? samples->Given : fields.Data.Values;
-  const auto isSet = [](const std::vector<char>& flags, std::size_t i)
-  { return !flags.empty() && flags[i] != 0; };
   const std::vector<double>& weights = samples ? samples->Weights : fields.FidelityFactors.Values;
   const bool isWeighted = weights.size() == static_cast<std::size_t>(values.rows());
-  std::array<Index, Known.size()> counts = {};
+  const bool onPoints = !samples && !fields.Data.OnCells;
+  const Reduction& reduction = surface.InputMesh().GetReduction();
+  std::array<double, Known.size()> counts = {};
   ValueBounds others;
   for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
     const auto row = static_cast<std::size_t>(i);
-    const bool isLeftOut = samples ? false
-                                   : isSet(fields.Missing, row) || isSet(fields.Weightless, row) ||
-        isSet(fields.Mask.Values, row);
+    const bool isLeftOut = !samples &&
+      (IsSet(fields.Missing, row) || IsSet(fields.Weightless, row) ||
+        IsSet(fields.Mask.Values, row));
     if (isLeftOut || (isWeighted && weights[row] == 0.0))
     {
       continue;
@@ -65,15 +68,17 @@ void AskForSentinels(const Fields& fields, RunResult& result)
       }
       else if (std::isfinite(value))
       {
-        others.Low = std::min(others.Low, value);
-        others.High = std::max(others.High, value);
+        others.Widen({ value, value });
       }
     }
     for (std::size_t k = 0; k < Known.size(); ++k)
     {
-      counts[k] += found[k] ? 1 : 0;
+      const Index v = onPoints && found[k] ? surface.VertexOf(static_cast<Index>(i)) : -1;
+      counts[k] += found[k] && (v < 0 || reduction.Owns(v)) ? 1.0 : 0.0;
     }
   }
+  processes.Sum(counts.data(), static_cast<int>(counts.size()));
+  others = OfAllProcesses(others, processes);
   for (std::size_t k = 0; k < Known.size() && others.High >= others.Low; ++k)
   {
     constexpr double far = 0.5; // of the range

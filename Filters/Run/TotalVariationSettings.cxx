@@ -81,14 +81,7 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "salt-and-pepper noise: outliers are replaced and the other values keep their "
                    "contrast. With L1 a weight of 1 to 2 is suitable." },
     this->FidelityNorm, { "L2", "L1" });
-  Rewording fidelity(visitor,
-    { { "AutomaticFidelity",
-      { "",
-        "Choose the fidelity weight by the discrepancy principle (Morozov 1966): the result "
-        "differs from the data by the noise level, where the data are not constant. Each component "
-        "of the data, unless ChannelCoupling is Joint, and each connected component of the surface "
-        "has a weight of its own. FidelityWeight is ignored." } } });
-  VisitAutomaticFidelity(fidelity, this->AutomaticFidelity, this->NoiseLevel);
+  VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
   visitor.Choice({ "Discretization", "",
                    "Linear: unknowns at the points, as in the paper. CrouzeixRaviart: unknowns "
                    "at the edges of the mesh, which are three times as many. It reproduces the "

@@ -11,11 +11,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-bool IsSet(const std::vector<char>& flags, Eigen::Index i)
-{
-  return !flags.empty() && flags[static_cast<std::size_t>(i)] != 0;
-}
-
 /// Per row of the data.
 std::vector<char> FindKnownRows(const Fields& fields, bool inpaint, bool unitVectors)
 {

@@ -355,6 +355,13 @@ inline std::vector<FilterKind> AllFilters()
         f->SetBoundaryToFree();
         f->ExactOn();
       }),
+    MakeKind<Spline>("InterpolationNatural", "fInterpolated", 1,
+      [](Spline* f)
+      {
+        SetInputArray(f, 1, "mask");
+        f->SetBoundaryToNatural();
+        f->ComputeErrorOn();
+      }),
     Slow(MakeKind<Spline>("InterpolationWeighted", "fInterpolated", 1,
       [](Spline* f) { SetInputArray(f, 5, "weights"); })),
     Slow(MakeKind<Spline>("InterpolationOfCells", "cInterpolated", 1,

@@ -100,6 +100,8 @@ private:
     Likelihood
   };
 
+  /// The share of the data that the residual keeps at mu = ratio mu_0.
+  static double Left(double s, double ratio);
   double CostOf(Criterion criterion, double mu, Eigen::Index column, double noise) const;
   double SlopeOf(Criterion criterion, double mu, Eigen::Index column, double noise) const;
   double Minimiser(Criterion criterion, Eigen::Index column, double noise) const;
