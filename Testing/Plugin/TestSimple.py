@@ -89,7 +89,9 @@ class TestSimple(unittest.TestCase):
     def test_shading_shows_harmonic_normals_at_once(self):
         harmonic = HarmonicMapFilter(self.sphere)
         self.assertEqual(harmonic.InputArray[1], "")
-        display = Show(harmonic, CreateView("RenderView"))
+        view = CreateView("RenderView")
+        self.addCleanup(Delete, view)
+        display = Show(harmonic, view)
         self.assertEqual(display.SelectNormalArray, "NormalsHarmonic")
 
     def test_clock_plays_seeks_and_reverses(self):

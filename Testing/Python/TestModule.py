@@ -81,7 +81,7 @@ class TestModule(unittest.TestCase):
             return " ".join(documented.__doc__.split())
 
         self.assertIn("heat equation", text(vtkFVMHeatFilter))
-        self.assertIn("Default: 1.", text(vtkFVMHeatFilter.SetTimeStep))
+        self.assertIn("Default: 1,", text(vtkFVMHeatFilter.SetTimeStep))
         self.assertIn("coordinate units", text(vtkFVMHeatFilter.SetFWHM))
         self.assertIn("u_t = div(", text(vtkIntrinsicTVFilter))
         self.assertIn("(R/h)^2", text(vtkIntrinsicTVFilter.SetBeta))

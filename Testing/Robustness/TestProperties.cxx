@@ -207,6 +207,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     With<Harmonic>([](Harmonic* f) { f->SetSchemeToExplicitReaction(); });
   needed["UseAsNormals"] = needed["MoveVertices"] =
     With<Harmonic>([](Harmonic* f) { SetInputArray(f, 0, ""); }); // of the surface's normals
+  needed["vtkHarmonicMapFilter GenerateTimeSteps"] = needed["vtkHarmonicMapFilter OutputInterval"] =
+    With<Harmonic>([](Harmonic* f) { f->SetTimeStep(1.0); });
   needed["vtkTuringTextureFilter GenerateTimeSteps"] =
     needed["vtkTuringTextureFilter OutputInterval"] =
       needed["vtkTuringTextureFilter StopTolerance"] =

@@ -24,7 +24,7 @@ struct Spheres
   vtkSmartPointer<vtkPolyData> Coarse = Sphere(1);
   vtkNew<vtkPolyData> Fine;
 
-  /// ruled: the index of the array that has a rule of its own, a mask or weights; -1: none.
+  /// ruled: the index of the array that has a rule of its own, a mask, weights or marks; -1: none.
   explicit Spheres(int ruled)
   {
     AddRough(this->Coarse);
@@ -35,7 +35,7 @@ struct Spheres
     SetInputArray(relief, 0, "none");
     if (ruled >= 0)
     {
-      SetInputArray(relief, ruled, ruled == 1 ? "mask" : "weights");
+      SetInputArray(relief, ruled, ruled == 1 ? "mask" : ruled == 3 ? "sources" : "weights");
     }
     relief->SetRefineTo(Length);
     relief->Update();
@@ -84,10 +84,11 @@ vtkSmartPointer<vtkPolyData> BoxPart(bool upper)
 TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
 {
   const auto refining = this->GetParam().Make();
-  static const Spheres plain(-1), withMask(1), withWeights(5);
-  const Spheres& spheres = HasInputArray(refining, 1) ? withMask
-    : HasInputArray(refining, 5)                      ? withWeights
-                                                      : plain;
+  static const Spheres plain(-1), withMask(1), withSources(3), withWeights(5);
+  const Spheres& spheres = refining->IsA("vtkSurfaceDistanceFilter") ? withSources
+    : HasInputArray(refining, 1)                                     ? withMask
+    : HasInputArray(refining, 5)                                     ? withWeights
+                                                                     : plain;
   const auto given = this->GetParam().Make();
   vtkSurfaceFilter::SafeDownCast(refining)->SetRefineTo(Length);
   refining->SetInputData(spheres.Coarse);

@@ -50,7 +50,7 @@ def print_texture(arguments, surface, report):
         _warn_without_unit(name, getattr(arguments, name), unit, report)
         lengths[name] = in_coordinates(getattr(arguments, name), unit)
     size, height = lengths["size"], lengths["relief"]
-    part = welded(surface)
+    part = welded(surface.solver)
     extent = float(np.linalg.norm(part.points.max(axis=0) - part.points.min(axis=0)))
     if not size < extent:
         raise ArgumentProblem(f"FEATURE_SIZE is {size:.4g} {unit}, but the part is {extent:.4g} {unit} "
@@ -124,10 +124,8 @@ def edge_of_triangles(surface, count):
 
 def welded(surface):
     """Vertices at the same place are one: files for viewers have one per face."""
-    faces = surface.solver.triangles
-    points, numbers = np.unique(np.asarray(surface.points, dtype=float) + 0.0, axis=0,
-                                return_inverse=True)
-    return Surface(points, numbers.reshape(-1)[faces])
+    points, numbers = np.unique(surface.points + 0.0, axis=0, return_inverse=True)
+    return Surface(points, numbers.reshape(-1)[surface.triangles])
 
 
 def in_coordinates(length, unit):

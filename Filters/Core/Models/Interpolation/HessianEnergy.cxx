@@ -79,8 +79,8 @@ struct PlaneTriangle
 {
   explicit PlaneTriangle(const TriangleMesh::Shape& s)
     : Area(s.Area())
+    , GradientShare(std::sqrt(NeedleShare(s)))
   {
-    const double share = std::sqrt(NeedleShare(s));
     Corners << 0.0, 0.0, s.Length, 0.0, s.X, s.Y;
     for (int a = 0; a < 3; ++a)
     {
@@ -89,7 +89,7 @@ struct PlaneTriangle
       this->Along.row(a) = edge.normalized();
       this->Inward.row(a) << -this->Along(a, 1), this->Along(a, 0);
       this->Basis.row(a) =
-        share / height * this->Inward.row(a); // of the linear function of corner a
+        this->GradientShare / height * this->Inward.row(a); // of the linear function of corner a
     }
     for (int a = 0; a < 3; ++a)
     {
@@ -99,6 +99,7 @@ struct PlaneTriangle
   }
 
   double Area;
+  double GradientShare; ///< of needles, beside that in Basis
   Eigen::Matrix<double, 3, 2> Corners, Along, Inward, Basis;
   std::array<double, 3> Angles;
 };
@@ -228,8 +229,8 @@ HessianEnergy::HessianEnergy(const TriangleMesh& mesh, bool withNegativeCurvatur
     {
       for (int b = 0; b < 3; ++b)
       {
-        gradient.emplace_back(
-          e.Number, vertices(t, b), e.Share * e.Axis.dot(triangle.Basis.row(b)));
+        gradient.emplace_back(e.Number, vertices(t, b),
+          e.Share * triangle.GradientShare * e.Axis.dot(triangle.Basis.row(b)));
       }
     }
     for (const Unknown& e : unknowns)
