@@ -152,6 +152,7 @@ protected:
     vtkPolyData* block, SurfaceDiffusion::InputFields& fields, Problems& problems) override;
   void PrepareOutputs(
     const std::vector<SurfaceBlock>& surfaces, const SurfaceDiffusion::SurfaceRuns& runs) override;
+  std::vector<int> ArraysOfMarks() const override { return { 0, 3, 6 }; }
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 

@@ -455,9 +455,11 @@ bool vtkSurfaceFilter::RefineSurfaces(std::vector<SurfacePiece>& pieces)
     vtkInformation* const array = this->GetInputArrayInformation(index);
     return array->Has(vtkDataObject::FIELD_NAME()) ? array->Get(vtkDataObject::FIELD_NAME()) : "";
   };
-  // Fixed points, seeds, and the sources of distances are marks, of any type.
-  const bool hasSources = this->IsA("vtkSurfaceDistanceFilter") != 0;
-  task.Rules = { nameAt(1), nameAt(5), { nameAt(3), nameAt(6), hasSources ? nameAt(0) : "" } };
+  task.Rules = { nameAt(1), nameAt(5), {} };
+  for (const int marks : this->ArraysOfMarks())
+  {
+    task.Rules.Marks.push_back(nameAt(marks));
+  }
   task.FindLength = [this](double meanEdgeLength, Sentence& explanation)
   { return this->FindRefinement(meanEdgeLength, explanation); };
   task.Complete = [this](const std::function<void()>& step)

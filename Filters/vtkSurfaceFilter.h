@@ -327,6 +327,9 @@ protected:
   int MaximumNumberOfTriangles = 4000000;
   static constexpr double RefineAutomatically = -1.0; ///< a value of RefineTo of some
   virtual bool MayRefineAutomatically() const { return false; }
+  /// The indices of the input arrays that are marks: of fixed points, seeds or sources, of any type. A
+  /// point between two marked ones of a refined surface is marked, another is not.
+  virtual std::vector<int> ArraysOfMarks() const { return { 3, 6 }; }
   int NumberOfThreads = 0;
   std::string ResultArrayName;
 

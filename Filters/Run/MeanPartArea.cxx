@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/MeanPartArea.h"
 
+#include "Core/Surface/AllComponents.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -30,10 +31,8 @@ double MeanPartArea(const std::vector<const TriangleMesh*>& surfaces)
       }
     }
     here *= std::pow(mesh->LengthUnit() / unit, 2);
-    std::vector<Index> all(static_cast<std::size_t>(count));
-    std::iota(all.begin(), all.end(), 0);
     Values whole = here;
-    mesh->GetReduction().SumComponents(all, whole);
+    mesh->GetReduction().SumComponents(AllComponents(*mesh), whole);
     double sums[2] = { here.sum(), here.col(0).dot(whole.col(0)) };
     mesh->GetReduction().Sum(sums, 2);
     sum += sums[0];

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Undetermined.h"
 
+#include "Core/Surface/AllComponents.h"
+
 #include <algorithm>
-#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -118,9 +119,7 @@ Undetermined FindUndetermined(const Surface& surface, const Fields& fields, bool
     counts(c, 1) = mesh.ComponentsBegin()[c + 1] - mesh.ComponentsBegin()[c];
   }
   const Vector verticesHere = counts.col(1);
-  std::vector<Index> all(static_cast<std::size_t>(components));
-  std::iota(all.begin(), all.end(), 0);
-  reduction.SumComponents(all, counts);
+  reduction.SumComponents(AllComponents(mesh), counts);
 
   for (Index c = 0; c < components; ++c)
   {

@@ -3,9 +3,12 @@
 """The examples in the pages of Documentation run, its links lead to files, each filter has its page, and its tutorials
 run."""
 import doctest
+import os
 import re
 import runpy
+import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -107,8 +110,34 @@ class TestCode(unittest.TestCase):
             for name in module.__all__]
         self.assertEqual(sorted(shown), sorted(public))
 
+    def test_the_doors_of_the_readme_run(self):
+        from surfacediffusion.examples import fetch
+        from surfacediffusion.files import read_data, read_surface
+
+        doors = (FOLDER.parent / "README.md").read_text(encoding="utf-8").split("## Filters")[0]
+        commands = re.findall(r"^surfacediffusion (.+)", doors, re.M)
+        self.assertEqual(len(commands), 3)
+        self.assertLessEqual(doors.count("\n"), 60)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
+        white, thickness = (fetch(f"{name}_left.gii.gz") for name in ("white", "thick"))
+        surface, data = read_surface(white), read_data(thickness)
+        surface.save("lh.midthickness.surf.gii", surface.points)
+        data.save("lh.thickness.shape.gii", [data.parts[0].values])
+        scan = pyvista.PolyData.from_regular_faces(surface.points, surface.faces)
+        scan["thickness"] = data.parts[0].values[:, 0]
+        scan.save("scan.vtp")
+        scan.save("scan.ply")
+        pyvista.PolyData.plot = lambda *_, scalars: self.assertEqual(scalars, "thicknessDiffused")
+        exec(re.search(r"```python\n(.+?)```", doors, re.DOTALL).group(1), {})
+        for command in commands:
+            subprocess.run([sys.executable, "-m", "surfacediffusion", *command.split()], check=True,
+                           stdout=subprocess.DEVNULL)
+        self.assertTrue(os.path.isfile("lh.smooth.shape.gii") and os.path.isfile("clean.ply"))
+
     def test_tutorials_run(self):
-        pyvista.Plotter.show = lambda self, *_, **__: self.close()
         tutorials = sorted((FOLDER / "tutorials").glob("plot_*.py"))
         self.assertEqual(len(tutorials), 7)
         for tutorial in tutorials:

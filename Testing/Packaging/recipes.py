@@ -107,7 +107,7 @@ def check_page():
         assert f"\nVersion: {version.group(1)}\n" in metadata, metadata[:600]
         if not package:
             _, page = metadata.split("\n\n", 1)
-            assert len(page) > 8000 and not relative.search(page), relative.findall(page)
+            assert len(page) > 6000 and not relative.search(page), relative.findall(page)
             assert "License: BSD-3-Clause\n" in metadata
             assert ("Project-URL: " in metadata) == bool(re.search('^address = "."', project, re.M))
     with_address = folder / "with_address"

@@ -5,10 +5,10 @@
 #include "Core/Foundation/Random.h"
 #include "Core/Models/LinearDiffusion.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Surface/AllComponents.h"
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -41,13 +41,6 @@ struct Statistics
   bool Empty() const { return !(this->Area > 0.0); }
   double Mean() const { return this->Empty() ? 0.0 : this->WeightedSum / this->Area; }
 };
-
-std::vector<Index> AllComponents(const TriangleMesh& mesh)
-{
-  std::vector<Index> all(mesh.NumberOfComponents());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
 
 } // namespace
 

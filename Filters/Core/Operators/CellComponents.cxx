@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/CellComponents.h"
 
+#include "Core/Surface/AllComponents.h"
+
 #include <algorithm>
-#include <numeric>
 
 namespace SurfaceDiffusion
 {
@@ -34,10 +35,8 @@ void CellComponents::SumOverProcesses()
   {
     return;
   }
-  std::vector<Index> all(static_cast<std::size_t>(this->Count()));
-  std::iota(all.begin(), all.end(), 0);
   Values sums = Eigen::Map<const Values>(this->Sums.data(), this->Count(), this->Columns);
-  this->Mesh.GetReduction().SumComponents(all, sums);
+  this->Mesh.GetReduction().SumComponents(AllComponents(this->Mesh), sums);
   std::copy(sums.data(), sums.data() + sums.size(), this->Sums.begin());
 }
 

@@ -3,10 +3,10 @@
 #include "Core/Operators/MeanCorrection.h"
 
 #include "Core/Foundation/ColumnSums.h"
+#include "Core/Surface/AllComponents.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -19,8 +19,7 @@ namespace
 template <typename Refuses>
 std::vector<Index> Select(const TriangleMesh& mesh, const Refuses& refuses)
 {
-  std::vector<Index> all(mesh.NumberOfComponents());
-  std::iota(all.begin(), all.end(), 0);
+  std::vector<Index> all = AllComponents(mesh);
   Values refusals(mesh.NumberOfComponents(), 1);
   for (const Index c : all)
   {

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Harmonic/UnitVectors.h"
 
+#include "Core/Surface/AllComponents.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <limits>
-#include <numeric>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -41,9 +42,7 @@ Values SumKnown(const TriangleMesh& mesh, const PointData& data, bool lineField)
       }
     }
   }
-  std::vector<Index> all(mesh.NumberOfComponents());
-  std::iota(all.begin(), all.end(), 0);
-  mesh.GetReduction().SumComponents(all, sums);
+  mesh.GetReduction().SumComponents(AllComponents(mesh), sums);
   return sums;
 }
 
