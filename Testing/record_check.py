@@ -24,15 +24,15 @@ compares the versions with the last release of the changelog.
 
 def result_of(log):
     """The count of ctest, of the fuzzer, of the links of the site or of the bounds."""
+    bounds = re.findall(r"^(\d+ bounds in \d+ builds); 0 of", log, re.MULTILINE)
+    if bounds:
+        return f"{bounds[-1]}, none of round-off used by more than 0.3"
     passed = re.findall(r"^\d+% tests passed, \d+ tests failed out of (\d+)", log, re.MULTILINE)
     if passed:
         return f"{passed[-1]} tests pass"
     pages = re.findall(r"^(\d+ pages, \d+ links), 0 broken$", log, re.MULTILINE)
     if pages:
         return f"{pages[-1]}, none broken"
-    bounds = re.findall(r"^(\d+ bounds in \d+ builds); 0 of", log, re.MULTILINE)
-    if bounds:
-        return f"{bounds[-1]}, none of round-off used by more than 0.3"
     runs = re.findall(r"^stat::number_of_executed_units:\s*(\d+)", log, re.MULTILINE)
     return f"{runs[-1]} runs without a finding"
 
