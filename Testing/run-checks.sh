@@ -53,7 +53,7 @@ bounds()
   build build || return 1
   for kernel in Prescott Nehalem Haswell Zen; do
     OPENBLAS_CORETYPE=$kernel ctest --preset test -j2 -R \
-      'Numpy.Test(Coarse|DenoiseMesh|Derivatives|Distance|Faces|Operators|PartsWithHoles|Shape|Smoothness)$' ||
+      'Numpy.(Test(Coarse|DenoiseMesh|Faces|PartsWithHoles|Shape|Smoothness)|.*WithScipy)$' ||
       return 1
   done
 }
