@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._functions import _run_once, left_out
+from ._functions import run_once
 from ._models import ARRAYS
 from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, interpolate_points, take_along
 from ._run import Input, Progress, ProgressReporter, Runner, warn
 from ._settings import settings_of, shorten
-from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place
+from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place, left_out
 
 __all__ = ["NearestSources", "distance", "distances", "nearest_sources"]
 
@@ -197,11 +197,10 @@ maximum_distance, merge_coincident_points, merge_tolerance, progress, refine_to,
         rows, places = None, np.einsum("ki,kij->kj", places, given.points[given.triangles[rows]])
     inputs = _make_input(surface, **carried)
     inputs.core.set_sources(places, None, None, rows, times)
-    runner = Runner("distance", {
+    outputs, _ = run_once("distance", inputs, {
         "method": method, "along_speed": along_speed, "across_speed": across_speed,
         "maximum_distance": maximum_distance, "merge_coincident_points": merge_coincident_points,
-        "merge_tolerance": merge_tolerance}, _ARRAYS)
-    outputs, _ = _run_once("distance", inputs, runner, progress)
+        "merge_tolerance": merge_tolerance}, _ARRAYS, progress)
     found = {output.name: output.values for output in outputs}
     source = found["NearestSource"].astype(np.int64)
     source = np.where(source < 0, -1, names[source])

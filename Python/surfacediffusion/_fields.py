@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._functions import left_out
 from ._run import Progress, ProgressReporter, part_of, warn, warn_of_seams
 from ._settings import check_positive, convert_all, shorten, spell
-from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place, place
+from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place, left_out, place
 
 __all__ = ["Surrogates", "random_field", "surrogates"]
 

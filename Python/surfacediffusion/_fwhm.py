@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._functions import heat
 from ._run import find_result_type, warn
 from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_data, as_flags, as_outside, as_surface, data_components
+from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, data_components, left_out
 
 #: exp(-d^2 / (4 sigma^2)) = exp(-d^2 * _RATE / FWHM^2), since FWHM^2 = 8 ln 2 sigma^2.
 _RATE = 2.0 * np.log(2.0)
@@ -118,7 +118,7 @@ def _estimate(
     """The estimate, and for each column the largest width that it may have; 0 if it is constant."""
     surface = as_surface(surface)
     maps = as_data("residuals", residuals, surface.n_points)
-    masked = as_flags("mask", _as_mask(mask, roi, surface), surface.n_points)
+    masked = as_flags("mask", left_out(mask, roi, surface, faces=False), surface.n_points)
     if not isinstance(demean, (bool, np.bool_)):
         raise ValueError(f"demean is {shorten(demean)}; allowed: True or False")
     edges = _Edges(surface)
@@ -159,15 +159,6 @@ def _estimate(
     pooled = _solve(products[varying].mean(), variances[varying].mean(axis=0), edges.squares,
                     areas[varying].mean())
     return FWHMEstimate(pooled, columns), widest
-
-
-def _as_mask(mask: Any, roi: Any, surface: Surface) -> Any:
-    """The mask of points, or that of the region of interest."""
-    if roi is None:
-        return mask
-    if mask is not None:
-        raise ValueError("mask and roi are both given; allowed: one of them")
-    return as_outside(roi, surface.n_points)
 
 
 class _Edges:
@@ -320,7 +311,7 @@ def smooth_to_fwhm(
             allowed = "finite numbers above 0" if name == "fwhm" else "0.0001 to 0.1"
             raise ValueError(f"{name} is {shorten(number)}; allowed: {allowed}")
     data = as_data("values", values, surface.n_points)
-    mask = _as_mask(mask, roi, surface)
+    mask = left_out(mask, roi, surface, faces=False)
     find_result_type(data, dtype)
     if residuals is None:
         noise = np.asarray(data, dtype=np.float64)

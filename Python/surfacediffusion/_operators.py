@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._functions import SHARED, left_out
+from ._functions import SHARED
 from ._run import Progress, ProgressReporter, warn_of_seams
 from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask
+from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask, left_out
 
 __all__ = ["Eigenmodes", "eigenmodes", "gradient_matrix", "mass_matrix", "stiffness_matrix"]
 

@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from ._fields import (
     check_finite, find_bands, leave_out_missing, make_fields, warn_of_edges, warn_of_solves,
 )
-from ._functions import left_out
 from ._run import Progress, ProgressReporter
 from ._settings import check_positive, shorten
-from ._surface import Surface, SurfaceLike, as_data, as_numbers, as_surface
+from ._surface import Surface, SurfaceLike, as_data, as_numbers, as_surface, left_out
 
 __all__ = ["Spectrum", "scale_filter", "spectrum"]
 

@@ -31,15 +31,6 @@ def as_numbers(name: str, values: Any) -> NDArray[Any]:
     return array
 
 
-def as_rows(name: str, values: Any, rows: int, columns: int, row_name: str) -> NDArray[np.float64]:
-    """A float64 array of the given shape."""
-    array = as_numbers(name, values)
-    if array.shape != (rows, columns):
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({rows}, {columns}), "
-                         f"one row per {row_name}")
-    return np.ascontiguousarray(array, dtype=np.float64)
-
-
 class Placed(np.ndarray):  # type: ignore[type-arg,unused-ignore]  # numpy 1.21 takes no arguments
     """An array that is known to be on points or on faces, of which there may be as many. What is computed
     from it has no known place."""
@@ -141,6 +132,16 @@ def as_outside(roi: Any, *sizes: int) -> NDArray[np.bool_]:
     return outside if known is None else place(outside, known)
 
 
+def left_out(mask: Any, roi: Any, surface: Surface, faces: bool = True) -> Any:
+    """The mask, or that of the outside of the region of interest in place of one. faces: whether it may be
+    on faces."""
+    if roi is None:
+        return mask
+    if mask is not None:
+        raise ValueError("mask and roi are both given; allowed: one of them")
+    return as_outside(roi, surface.n_points, *[surface.n_faces] * faces)
+
+
 def as_factors(name: str, values: Any) -> NDArray[np.float64] | None:
     """Numbers; None stays."""
     if values is None:
@@ -158,11 +159,6 @@ def as_data(name: str, values: Any, points: int, row_name: str = "point") -> NDA
     kept = array.dtype.kind == "f" and array.dtype.itemsize == 4
     dtype: Any = np.float32 if kept else np.uint8 if array.dtype == np.uint8 else np.float64
     return np.ascontiguousarray(array.reshape(points, -1), dtype=dtype)
-
-
-def has_integers(values: Any) -> bool:
-    """Whether data are integers, for which as_data() may give floating-point numbers."""
-    return np.asarray(values).dtype.kind in "biu"
 
 
 def find_on_faces(name: str, values: Any, surface: Surface, on_faces: bool | None) -> bool:
@@ -387,12 +383,8 @@ class Surface:
     def normals(self) -> NDArray[np.float64]:
         """The normalised sums (n, 3) of the unit normals of the faces at each point; zero at points
         without face. Outward if faces are counter-clockwise as seen from outside."""
-        sums = np.zeros((self.n_points, 3))
-        normals = self._face_normals()
-        for axis in range(3):
-            weights = np.repeat(normals[:, axis], np.diff(self._offsets))
-            sums[:, axis] = np.bincount(self._connectivity, weights, minlength=self.n_points)
-        return normalize(sums)
+        normals = np.repeat(self._face_normals(), np.diff(self._offsets), axis=0)
+        return sum_vectors(self._connectivity, normals, self.n_points)
 
     def __repr__(self) -> str:
         return f"<Surface: {self.n_points} points, {self.n_faces} faces>"
@@ -434,6 +426,13 @@ def normalize(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
                       + vectors[:, 2] * vectors[:, 2])
     vectors[lengths > 0] /= lengths[lengths > 0, None]
     return vectors
+
+
+def sum_vectors(
+    rows: NDArray[Any], vectors: NDArray[np.float64], count: int
+) -> NDArray[np.float64]:
+    """The normalised sums of vectors at each of `count` rows."""
+    return normalize(np.stack([np.bincount(rows, column, count) for column in vectors.T], axis=1))
 
 
 def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -16,13 +16,13 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
+from .._polydata import ABSENT, SurfaceError, cell_flags, to_numpy
 from .._refinement import mean_edge_length
 from ._fields import (
-    BY_INDEX, FLAGS, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
+    BY_INDEX, FLAGS, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, read_fields)
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement
-from ._surfaces import (
-    ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure, to_numpy)
+from ._surfaces import Block, Parts, Shapes, copy_structure
 
 #: Properties that are no settings of the extension, with their defaults.
 _OWN: dict[str, Any] = {
@@ -390,9 +390,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         sentences = []
         for block, fields in found:
             self.shapes.find(block)
-            make_core(fields, block)
+            read_fields(fields, block)
             sentences += [(spell(words), block.name) for words in
-                          _core.find_problems(self.MODEL, self.settings, fields.core)]
+                          _core.find_problems(self.MODEL, self.settings, fields.given.core)]
         problems += join_sentences(sentences, len(found))
 
     # Reports -----------------------------------------------------------------------------------

@@ -5,25 +5,25 @@ do not say."""
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
-from vtkmodules.vtkCommonCore import VTK_FLOAT, VTK_UNSIGNED_CHAR
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkDataSetAttributes, vtkPolyData
+from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkDemandDrivenPipeline, vtkStreamingDemandDrivenPipeline
 
 from .. import _core
+from .._models import Output, find_outputs, read_outputs
+from .._polydata import HIDDEN_CELL, cell_flags, compute_point_normals, make_array, to_numpy, turn_polygons
 from ._algorithm import SurfaceFilter, list_settings, spell
 from ._fields import (
     CELLS, POINTS, POINTS_THEN_CELLS, Choice, Fields, join_sentences, read_samples, read_sources,
     settle_absence,
 )
-from ._normals import compute_point_normals
 from ._pieces import Stitched
-from ._results import (
-    Output, make_array, read_outputs, write_columns, write_curves, write_history, write_outputs,
-)
-from ._surfaces import HIDDEN_CELL, Block, cell_flags, to_numpy
+from ._results import write_columns, write_curves, write_history, write_outputs
+from ._surfaces import Block
 
 _SCALARS = Choice(POINTS_THEN_CELLS, None, vtkDataSetAttributes.SCALARS)
 _TIME = vtkStreamingDemandDrivenPipeline
@@ -66,31 +66,19 @@ class RunFilter(SurfaceFilter):
     def run(
         self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
     ) -> tuple[list[str], list[str]]:
-        self._runs.update([found.core for found in fields], self.settings, self.progress)
+        self._runs.update([found.given.core for found in fields], self.settings, self.progress)
         self.progress(0.95)  # the last chance to abort
         replaced = []
         for number, (block, found) in enumerate(zip(blocks, fields)):
-            def write(entry: int, values: Any, source: Any, number: int = number) -> None:
-                self._runs.write(number, entry, values, source)
-
-            results = read_outputs(self._runs.outputs(number), write, found, block, np.float64)
+            write = functools.partial(self._runs.write, number)
+            results = read_outputs(self._runs.outputs(number), write, found.given, np.float64)
             turned = self._runs.turned_triangles(number)
             if turned.size:
-                _turn_polygons(block.output, sorted(set(block.cells[turned].tolist())))
+                turn_polygons(block.output, block.cells[turned])
             data = getattr(found, self.NAMED_AFTER).values if self.NAMED_AFTER else None
             replaced += write_outputs(results, found, data, block, self.own["ResultArrayName"])
         self.set_numbers(self._runs.numbers())
         return replaced, [spell(words) for words in self._runs.new_warnings()]
-
-
-def _turn_polygons(surface: Any, cells: list[int]) -> None:
-    first = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
-    polygons = vtkCellArray()
-    polygons.DeepCopy(surface.GetPolys())
-    for cell in cells:
-        if 0 <= cell - first < surface.GetNumberOfPolys():
-            polygons.ReverseCellAtId(cell - first)
-    surface.SetPolys(polygons)
 
 
 class ModelFilter(SurfaceFilter):
@@ -144,17 +132,14 @@ class ModelFilter(SurfaceFilter):
         self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
     ) -> tuple[list[str], list[str]]:
         run = self._run
-        run.update([found.core for found in fields], self.settings, self.progress)
+        run.update([found.given.core for found in fields], self.settings, self.progress)
         step = self._choose_step(request, outputs)
         run.seek(step, self.progress)
         self.progress(0.95)  # the last chance to abort
         results, replaced = [], []
         for number, (block, found) in enumerate(zip(blocks, fields)):
-            def write(entry: int, values: Any, source: Any, number: int = number,
-                      found: Fields = found) -> None:
-                run.write(number, entry, values, source, -1, found.integers)
-
-            results.append(read_outputs(run.outputs(number), write, found, block, self._result_type(found)))
+            dtype = (np.float32, np.float64, None)[self.own["OutputPrecision"]]
+            results.append(find_outputs(run, number, found.given, dtype))
             replaced += write_outputs(
                 results[-1], found, found.data.values, block, self.own["ResultArrayName"])
         replaced += self._write_weights(blocks, results)
@@ -180,15 +165,9 @@ class ModelFilter(SurfaceFilter):
                 keeps |= (flags & HIDDEN_CELL) != 0
             to_numpy(result)[keeps] = to_numpy(fields.data.values)[keeps]
 
-    def _result_type(self, fields: Fields) -> Any:
-        data, precision = fields.data.values, self.own["OutputPrecision"]
-        if precision == 2 and data is not None:
-            return {VTK_FLOAT: np.float32, VTK_UNSIGNED_CHAR: np.uint8}.get(data.GetDataType(), np.float64)
-        return np.float32 if precision == 0 else np.float64
-
     def _write_weights(self, blocks: list[Block], results: list[list[Output]]) -> list[str]:
         """If blocks have different weights, which AutomaticFidelity finds, each has its own as field data."""
-        weights = [next((float(output.values[0, 0]) for output in outputs if output.place == "number"
+        weights = [next((float(output.rows[0, 0]) for output in outputs if output.place == "number"
                          and output.name == "EffectiveFidelityWeight"), 0.0) for outputs in results]
         name = self.own["ResultArrayName"] + "EffectiveFidelityWeight"
         replaced = []
