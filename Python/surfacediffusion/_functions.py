@@ -223,7 +223,7 @@ def _diffusion(
 ) -> Any:
     form = _find_form(properties, name)
     surface = as_surface(surface)
-    data, on_faces, integers = take_data(name, surface, values, properties, on_faces)
+    data, on_faces, integers = take_data(name, surface, values, on_faces)
     find_result_type(data, dtype)
     given = Input(surface, data, data_on_faces=on_faces, mask=as_mask(mask, roi, surface, properties),
                   fixed=fixed, directions=directions, fidelity=fidelity, rates=rates, integers=integers,
@@ -690,7 +690,7 @@ def segment(
         raise ValueError("values and terms are " + ("both" if values is not None else "not") +
                          f" given; allowed: one of them{alone}")
     name, array = ("values", values) if terms is None else ("terms", terms)
-    data, on_faces, integers = take_data("segment", surface, array, properties, on_faces, name)
+    data, on_faces, integers = take_data("segment", surface, array, on_faces, name)
     given = Input(surface, data, data_on_faces=on_faces, mask=as_mask(mask, roi, surface, properties),
                   fidelity=fidelity, seeds=seeds, data_are_terms=terms is not None, integers=integers)
     return _find("segment", SegmentationResult, given, properties, progress)
@@ -762,7 +762,7 @@ def interpolate(
     refined = properties.pop("_refined", None)
     mask = as_mask(mask, roi, surface, properties)
     if points is None:
-        data, on_faces, integers = take_data("interpolate", surface, values, properties, on_faces)
+        data, on_faces, integers = take_data("interpolate", surface, values, on_faces)
         given = Input(surface, data, data_on_faces=on_faces, mask=mask, directions=directions,
                       fidelity=fidelity, integers=integers, refined=refined)
     else:
@@ -963,7 +963,7 @@ def derivatives(
         if len(shape) not in (1, 2) or shape[0] not in (n, m):
             raise ValueError(f"{name} has shape {shape}; allowed: ({n}, 3) or ({n}, 3 k), one row of 1 or k "
                              f"vectors per point, or ({m}, 3) or ({m}, 3 k), one per face")
-    data, on_faces, _ = take_data("derivatives", surface, values, properties, on_faces, name)
+    data, on_faces, _ = take_data("derivatives", surface, values, on_faces, name)
     data = data.astype(np.float64) if data.dtype == np.uint8 else data  # no colour, whose alpha is no data
     given = Input(surface, data, data_on_faces=on_faces, mask=left_out(mask, roi, surface))
     outputs, found = run_once("derivatives", given, properties, {**ARRAYS, "InputArray": name}, progress)

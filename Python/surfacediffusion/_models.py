@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ._result import RegionBoundary
 from ._run import Given, find_result_type
 from ._settings import shorten, snake_case
-from ._surface import Surface, as_data, as_factors, as_numbers, data_components, find_on_faces, left_out
+from ._surface import Surface, as_data, as_factors, as_numbers, find_on_faces, left_out
 
 #: The keywords of input arrays, by their names in messages.
 ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "directions",
@@ -116,34 +116,23 @@ def make_result(
 
 
 def take_data(
-    function: str, surface: Surface, values: Any, properties: Mapping[str, Any], on_faces: Any = None,
-    name: str = "values",
+    function: str, surface: Surface, values: Any, on_faces: Any = None, name: str = "values"
 ) -> tuple[Any, bool, bool]:
     """The data of a function, whether they are on faces, and whether they were integers, for which there may
     be floating-point numbers. name: in messages."""
     n = surface.n_points
-    if function == "turing_texture":
-        check_colors(properties)
-        if values is None:
-            return None, False, False
-        found = as_numbers("initial", values)
-        if found.shape != (n, 2):
-            raise ValueError(f"initial has shape {found.shape}; allowed: ({n}, 2), one row per point")
-        return as_data("initial", values, n), False, False
     if function == "harmonic_map" and values is None:
         return surface._point_normals(), False, False
+    if function == "turing_texture":
+        name, on_faces = "initial", False
+        if values is None:
+            return None, False, False
+        if np.shape(as_numbers(name, values)) != (n, 2):
+            raise ValueError(f"initial has shape {np.shape(values)}; allowed: ({n}, 2), one row per point")
     name = "vectors" if function == "harmonic_map" else name
     on_faces = find_on_faces(name, values, surface, on_faces)
-    rows, row_name = (surface.n_faces, "face") if on_faces else (n, "point")
-    if function == "harmonic_map":
-        found = as_numbers(name, values)
-        if found.ndim != 2 or found.shape[0] != rows or data_components(found) < 2:
-            raise ValueError(f"{name} has shape {found.shape}; allowed: ({rows}, k), one row per {row_name} "
-                             "and k > 1, alpha of colours not counted")
-        if properties.get("move_vertices", False) is True and found.shape[1] != 3:
-            raise ValueError(f"{name} has shape {found.shape}; allowed with move_vertices: ({n}, 3)")
-    data = as_data(name, values, rows, row_name)
-    return data, on_faces, np.asarray(values).dtype.kind in "biu"
+    data = as_data(name, values, *((surface.n_faces, "face") if on_faces else (n, "point")))
+    return data, on_faces, function != "turing_texture" and np.asarray(values).dtype.kind in "biu"
 
 
 def as_mask(mask: Any, roi: Any, surface: Surface, properties: dict[str, Any]) -> Any:
@@ -174,13 +163,3 @@ def as_samples(
         raise ValueError(f"fidelity has shape {weights.shape}; allowed: ({p},), one number per point "
                          "of points")
     return places, found.reshape(p, -1 if found.size else 1), weights
-
-
-def check_colors(properties: Mapping[str, Any]) -> None:
-    """low_color and high_color have to be colours."""
-    for name in ("low_color", "high_color"):
-        if name in properties:
-            parts = as_numbers(name, properties[name])
-            if parts.shape != (3,) or not ((parts >= 0.0) & (parts <= 1.0)).all():
-                raise ValueError(f"{name} is {shorten(properties[name])}; allowed: three numbers from "
-                                 "0 to 1")

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._settings import convert_all, settings_of, shorten, spell
+from ._settings import as_switch, convert_all, settings_of, shorten, spell
 from ._surface import (
     Surface, as_directions, as_factors, as_flags, as_numbers, data_components, find_place,
 )
@@ -40,16 +40,26 @@ def warn(sentences: list[str], category: type[Warning] = SurfaceDiffusionWarning
     warnings.warn("; ".join(sentences), category, stacklevel=level)
 
 
-def warn_of_seams(built: Any, consequence: str) -> None:
-    """A warning if points of the boundary coincide: a surface whose triangles do not share them."""
+def check_parts(built: Any) -> int:
+    """The number of vertices. ValueError if there are none, and a warning if points of the boundary coincide:
+    a surface whose triangles do not share them."""
+    if built.number_of_vertices() == 0:
+        raise ValueError("no triangle of the surface is left; allowed: one or more that are not masked "
+                         "and have an area")
+    warn_of_seams(built)
+    return int(built.number_of_vertices())
+
+
+def warn_of_seams(built: Any) -> None:
+    """A warning if points of the boundary coincide."""
     count, distance = built.seams()
     if distance:
         how = f"points within {distance:g} of one another once, as scipy.spatial.cKDTree finds them"
     else:
         how = "points at one place once, as numpy.unique(points, axis=0, return_inverse=True) does"
     if count:
-        warn([f"{count} boundary points coincide with others and {consequence} (to join them, number "
-              f"{how})"])
+        warn([f"{count} boundary points coincide with others and nothing flows between them (to join them, "
+              f"number {how})"])
 
 
 def take_old_switch(
@@ -58,11 +68,9 @@ def take_old_switch(
     """The value of a switch of former versions, which leaves the properties with a warning."""
     if word not in properties:
         return default
-    given = properties.pop(word)
-    if not isinstance(given, (bool, np.bool_)):
-        raise ValueError(f"{word} is {shorten(given)}; allowed: True or False")
+    given = as_switch(word, properties.pop(word))
     warn([f"{word} of {function}() is deprecated: {instead}"], DeprecationWarning)
-    return bool(given)
+    return given
 
 
 class ProgressReporter:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._settings import check_positive, shorten
+from ._settings import as_integer, as_number, as_switch, shorten
 
 _NUMBERS = "biuf"  #: kinds of numpy types: bool, integer, unsigned integer, float
 
@@ -164,10 +164,8 @@ def as_data(name: str, values: Any, points: int, row_name: str = "point") -> NDA
 def find_on_faces(name: str, values: Any, surface: Surface, on_faces: bool | None) -> bool:
     """Whether data are on faces: as `on_faces` says, or if their number is that of the faces and not
     that of the points."""
-    if on_faces is not None and not isinstance(on_faces, (bool, np.bool_)):
-        raise ValueError(f"on_faces is {shorten(on_faces)}; allowed: True, False or None")
     if on_faces is not None:
-        return bool(on_faces)
+        return as_switch("on_faces", on_faces)
     array, n, m = as_numbers(name, values), surface.n_points, surface.n_faces
     if array.ndim not in (1, 2) or array.shape[0] not in (n, m) or array.size == 0:
         raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},) or ({n}, k), one row per "
@@ -533,9 +531,8 @@ def sphere(subdivisions: int = 4, radius: float = 1.0) -> Surface:
     >>> sphere(3)
     <Surface: 642 points, 1280 faces>
     """
-    if not (isinstance(subdivisions, (int, np.integer)) and 0 <= subdivisions <= 9):
-        raise ValueError(f"subdivisions is {shorten(subdivisions)}; allowed: 0 to 9")
-    check_positive("radius", radius)
+    as_integer("subdivisions", subdivisions, 0, 9)
+    as_number("radius", radius)
     g = (1.0 + 5.0**0.5) / 2.0
     points = np.array([[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0], [0, -1, g], [0, 1, g],
                        [0, -1, -g], [0, 1, -g], [g, 0, -1], [g, 0, 1], [-g, 0, -1], [-g, 0, 1]])

@@ -63,7 +63,6 @@ from . import _core, _functions
 from ._distance import nearest_sources as _nearest_sources
 from ._fields import random_field as _random_field
 from ._fields import surrogates as _surrogates
-from ._meshes import find_polydata
 from ._models import ARRAYS, Output, as_mask, find_outputs, make_result, take_data
 from ._polydata import (
     ABSENT, attribute_of, cell_flags, move_points, name_of, read_cells, refined_polydata, turn_polygons,
@@ -78,7 +77,7 @@ from ._run import Input, Progress, Runner, find_result_type, take_old_switch
 from ._scales import scale_filter as _scale_filter
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
-from ._surface import Surface, left_out, place
+from ._surface import Surface, place
 
 __all__: list[str] = []
 __all__ += [*_functions.__all__, "distance", "random_field", "relief", "scale_filter", "surrogates"]
@@ -160,6 +159,7 @@ def segment(
     cells if the data are on cells. return_result: if True, the function returns a pair: the mesh, and the
     SegmentationResult, of a MultiBlock the list of them.
     """
+
     def read(block: _Block) -> dict[str, Any]:
         name, given = ("values", array) if terms is None else ("terms", terms)
         return {name: block.find_whole(given, "array" if terms is None else "terms"),
@@ -233,8 +233,10 @@ def relief(
     array; points, and the points of cells, with a nonzero value have no relief. The method and all other
     keywords are described in help(surfacediffusion.relief). The result has moved points and the point
     array ReliefHeight (n,), the heights that were used; polygons are oriented outwards.
-    Normals are computed again, and tangents are dropped. return_result: if True, the function returns a pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
+    Normals are computed again, and tangents are dropped. return_result: if True, the function returns a
+    pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
     """
+
     def read(block: _Block) -> dict[str, Any]:
         return {"values": block.find("array", array, faces=False), "height": height,
                 **block.find_all(mask=mask)}
@@ -324,14 +326,13 @@ def random_field(
     component per field, which becomes active, and NaN at points that are left out. result_array_name is the
     prefix of its name.
     """
-    blocks = _find_surfaces(mesh, "random_field", {})
-    name = (result_array_name or "") + "RandomField"
-    for block in blocks:
-        found = _random_field(
+
+    def draw(block: _Block) -> tuple[str, NDArray[Any]]:
+        return "RandomField", _random_field(
             block.surface, n, fwhm=fwhm, range=range, nu=nu, seed=seed, normalize=normalize,
             progress=progress, **block.find_all(mask=mask, roi=roi), **merging)
-        _add_columns(block, name, found)
-    return _rebuild(mesh, iter(blocks))
+
+    return _add_columns(mesh, draw, result_array_name, is_prefix=True)
 
 
 def surrogates(
@@ -345,13 +346,14 @@ def surrogates(
     surfacediffusion.surrogates. The result is a point array with a component per surrogate, which becomes
     active: that of the map's name followed by Surrogates, or result_array_name.
     """
-    blocks = _find_surfaces(mesh, "surrogates", {})
-    for block in blocks:
+
+    def draw(block: _Block) -> tuple[str, NDArray[Any]]:
         values = block.find_data(array, faces=False)
         found = _surrogates(block.surface, values, n, seed=seed, progress=progress,
                             **block.find_all(mask=mask, roi=roi))
-        _add_columns(block, result_array_name or block.name + "Surrogates", found.values)
-    return _rebuild(mesh, iter(blocks))
+        return block.name + "Surrogates", found.values
+
+    return _add_columns(mesh, draw, result_array_name)
 
 
 def scale_filter(
@@ -366,21 +368,29 @@ def scale_filter(
     surfacediffusion.scale_filter. The result has the name of the array followed by Filtered, or
     result_array_name, and becomes active.
     """
-    blocks = _find_surfaces(mesh, "scale_filter", {})
-    for block in blocks:
+    def filter_values(block: _Block) -> tuple[str, NDArray[Any]]:
         values, lengths = block.find_data(array, faces=False), wavelength
         if isinstance(wavelength, str):
             lengths = block.find("wavelength", wavelength, faces=False)
-        found = _scale_filter(block.surface, values, lengths, order=order, progress=progress,
-                              **block.find_all(mask=mask, roi=roi))
-        _add_columns(block, result_array_name or block.name + "Filtered", found)
+        return block.name + "Filtered", _scale_filter(
+            block.surface, values, lengths, order=order, progress=progress,
+            **block.find_all(mask=mask, roi=roi))
+
+    return _add_columns(mesh, filter_values, result_array_name)
+
+
+def _add_columns(
+    mesh: Any, find: Callable[[_Block], tuple[str, NDArray[Any]]], name: str | None, is_prefix: bool = False
+) -> Any:
+    """Add a point array to each surface, without a second dimension if it has one column, and make it active.
+    find: its usual name and its values. name: in place of that name, or before it."""
+    blocks = _find_surfaces(mesh, "", {})
+    for block in blocks:
+        usual, values = find(block)
+        given = (name or "") + usual if is_prefix else name or usual
+        block.mesh.point_data[given] = values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
+        block.mesh.set_active_scalars(given, "point")
     return _rebuild(mesh, iter(blocks))
-
-
-def _add_columns(block: _Block, name: str, values: NDArray[Any]) -> None:
-    """Add a point array, without a second dimension if it has one column, and make it active."""
-    block.mesh.point_data[name] = values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
-    block.mesh.set_active_scalars(name, "point")
 
 
 def derivatives(
@@ -400,7 +410,7 @@ def derivatives(
         return _has(leaf, leaf.active_scalars_name if array is None else array)
 
     def read(block: _Block) -> dict[str, Any] | None:
-        if not has(block.origin) and any(map(has, find_polydata(mesh))):
+        if not has(block.origin) and any(map(has, _find_polydata(mesh))):
             return None
         return {"values": block.find_data(array), **block.find_all(mask=mask, roi=roi)}
 
@@ -416,6 +426,7 @@ def direction_field(
     are those of surfacediffusion.direction_field. The result is the cell array Direction (m, 3):
     unit vectors whose sign has no meaning, zero in cells that have no direction.
     """
+
     def read(block: _Block) -> dict[str, Any]:
         if block.has_strips:
             raise TypeError("the mesh has triangle strips, which have no single direction; allowed: "
@@ -542,6 +553,22 @@ class _Block:
         return block
 
 
+def _find_polydata(mesh: Any) -> Iterator[pyvista.PolyData]:
+    """The mesh, or the blocks of a MultiBlock at any depth, without those that are None. TypeError
+    with the remedy if there is anything other than a surface."""
+    if isinstance(mesh, pyvista.MultiBlock):
+        for block in mesh:
+            if block is not None:
+                yield from _find_polydata(block)
+    elif isinstance(mesh, pyvista.PolyData):
+        yield mesh
+    else:
+        remedy = "; mesh.extract_surface() gives its surface" if hasattr(
+            mesh, "extract_surface") else ""
+        raise TypeError(f"the mesh is a {type(mesh).__name__}; allowed: pyvista.PolyData, or a "
+                        f"pyvista.MultiBlock of it{remedy}")
+
+
 def _find_faces(mesh: pyvista.PolyData) -> tuple[Any, NDArray[np.int64]]:
     """The polygons, and strips as triangles, without hidden and ghost cells; the cell of each."""
     corners, offsets, cells = read_cells(mesh).without_strips()
@@ -563,7 +590,7 @@ def _has(mesh: Any, name: Any) -> bool:
 def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_Block]:
     """The surfaces of a mesh, without empty blocks. Keywords of refinement are used and removed."""
     refine_to, limit = (keywords.pop(new.name, new.default) for new in keywords_of(function))
-    leaves = list(find_polydata(mesh))
+    leaves = list(_find_polydata(mesh))
     blocks = [block for block in map(_Block, leaves) if not block.empty]
     if not any(leaf.n_points > 0 for leaf in leaves):
         raise ValueError("the mesh is empty; allowed: a surface of polygons or strips")
@@ -650,7 +677,7 @@ def _prepare(
         values = block.find("initial", array, faces=False)
     else:
         values = block.find_whole(array)
-    data, on_faces, integers = take_data(function, block.surface, values, properties, name=block.name)
+    data, on_faces, integers = take_data(function, block.surface, values, name=block.name)
     marks = block.find_all(mask=mask, roi=roi, fixed=fixed, fidelity=fidelity)
     marks["mask"] = as_mask(marks["mask"], marks.pop("roi"), block.surface, properties)
     return Input(

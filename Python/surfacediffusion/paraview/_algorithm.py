@@ -6,7 +6,6 @@ and warnings. It is the update of vtkSurfaceFilter, in one process."""
 from __future__ import annotations
 
 import functools
-import hashlib
 from typing import Any, Callable, Iterable
 
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -16,13 +15,13 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
-from .._polydata import ABSENT, SurfaceError, cell_flags, to_numpy
+from .._polydata import ABSENT, SurfaceError, cell_flags
 from .._refinement import mean_edge_length
 from ._fields import (
     BY_INDEX, FLAGS, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, read_fields)
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement
-from ._surfaces import Block, Parts, Shapes, copy_structure
+from ._surfaces import Block, Parts, Shapes, copy_structure, hash_arrays
 
 #: Properties that are no settings of the extension, with their defaults.
 _OWN: dict[str, Any] = {
@@ -74,6 +73,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     RESULT_NAME = ""
 
     HAS_POINT_INPUT = False
+    MAY_REFINE_AUTOMATICALLY = False  #: whether RefineTo may be -1
     RULES = {1: "mask", 3: "mark", 5: "weight", 6: "mark"}  #: of refinement, by the index of an array
     DEFAULT_CHOICE: Choice | None = None
 
@@ -150,7 +150,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return 1
 
     def RequestDataObject(self, _request: Any, inputs: Any, outputs: Any) -> int:
-        given, output = self._first_input(inputs), outputs.GetInformationObject(0)
+        given, output = self._find_input(inputs, 0), outputs.GetInformationObject(0)
         made = output.Get(vtkDataObject.DATA_OBJECT())
         if given is None:
             if made is None:
@@ -163,7 +163,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         made = [self.GetOutputData(outputs, port) for port in range(len(self.OUTPUTS))]
         for extra in made[1:]:
             extra.Initialize()
-        parts = copy_structure(self._first_input(inputs), made[0])
+        parts = copy_structure(self._find_input(inputs, 0), made[0])
         if self._failed_with and self._failed_with == self._find_state(inputs, parts):  # at another time
             self._quiet_executive()
             return 0
@@ -205,38 +205,29 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     def _find_state(self, inputs: Any, parts: Parts) -> list[Any]:
         """The contents of the surfaces and the surface that each is a piece of, and when the filter and its
         second input were modified. (ParaView copies the input for each time.)"""
-        digest = hashlib.sha1()
+        second = self._find_input(inputs, 1)
+        state: list[Any] = [self.GetMTime(), 0 if second is None else second.GetMTime()]
         for block in parts.blocks:
             data = block.input
-            digest.update(str(block.surface).encode())
-            arrays = [data.GetPoints().GetData()] if data.GetPoints() else []
+            arrays = [data.GetPoints().GetData() if data.GetPoints() else None]
             for cells in (data.GetPolys(), data.GetStrips()):
                 arrays += [cells.GetOffsetsArray(), cells.GetConnectivityArray()]
             for attributes in (data.GetPointData(), data.GetCellData()):
-                for i in range(attributes.GetNumberOfArrays()):
-                    array = attributes.GetArray(i)
-                    arrays += [] if array is None else [array]
-                    digest.update(f"{attributes.GetArrayName(i)} {attributes.IsArrayAnAttribute(i)}".encode())
-            for array in arrays:
-                digest.update(to_numpy(array).tobytes())
-        second = self._second_input(inputs)
-        return [self.GetMTime(), 0 if second is None else second.GetMTime(), digest.hexdigest()]
+                numbers = range(attributes.GetNumberOfArrays())
+                arrays += [attributes.GetArray(i) for i in numbers]
+                state += [(attributes.GetArrayName(i), attributes.IsArrayAnAttribute(i)) for i in numbers]
+            state += [block.surface, hash_arrays(arrays)]
+        return state
 
     def ReleaseCache(self) -> None:
         """Free what is kept from one update to the next."""
         self.shapes = Shapes()
 
     @staticmethod
-    def _first_input(inputs: Any) -> Any:
-        if inputs[0].GetNumberOfInformationObjects() == 0:
+    def _find_input(inputs: Any, port: int) -> Any:
+        if port >= len(inputs) or inputs[port].GetNumberOfInformationObjects() == 0:
             return None
-        return inputs[0].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
-
-    @staticmethod
-    def _second_input(inputs: Any) -> Any:
-        if len(inputs) < 2 or inputs[1].GetNumberOfInformationObjects() == 0:
-            return None
-        return inputs[1].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
+        return inputs[port].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
 
     # Update ------------------------------------------------------------------------------------
 
@@ -281,7 +272,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
 
     def begin(self, inputs: Any) -> None:
         """Read the points of the second input, which all blocks share."""
-        data = self._second_input(inputs)
+        data = self._find_input(inputs, 1)
         self.has_points = data is not None
         nothing: tuple[Any, list[str]] = (None, [])
         self.points, self.problems_of_points = nothing if data is None else self.read_points(data)
@@ -309,17 +300,14 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             problems.append(f"SeamTolerance is {seam:g}; allowed: finite numbers, 0 or more, or -1: 1e-6 of "
                             "the bounding box")
         length = own["RefineTo"]
-        if not (0.0 <= length < float("inf") or (self.may_refine_automatically() and length == -1.0)):
-            also = ", or -1: automatic" if self.may_refine_automatically() else ""
+        if not (0.0 <= length < float("inf") or (self.MAY_REFINE_AUTOMATICALLY and length == -1.0)):
+            also = ", or -1: automatic" if self.MAY_REFINE_AUTOMATICALLY else ""
             problems.append(f"RefineTo is {length:g}; allowed: finite numbers, 0 or more{also}")
         for name, lowest, allowed in (("MaximumNumberOfTriangles", 1, "integers, 1 or more"),
                                       ("NumberOfThreads", 0, "integers, 0 or more; 0: all")):
             if own[name] < lowest:
                 problems.append(f"{name} is {own[name]}; allowed: {allowed}")
         return problems
-
-    def may_refine_automatically(self) -> bool:
-        return False
 
     def _select(self, blocks: list[Block], parts: Parts, problems: list[str]) -> list[Block]:
         """Return the blocks with polygons."""

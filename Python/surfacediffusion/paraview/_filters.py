@@ -283,6 +283,7 @@ class HarmonicMap(ModelFilter):
 
 class Texture(ModelFilter):
     DEFAULT_CHOICE = Choice(POINTS, "")
+    MAY_REFINE_AUTOMATICALLY = True
 
     def __init__(self) -> None:
         ModelFilter.__init__(self)
@@ -292,9 +293,6 @@ class Texture(ModelFilter):
         if name == "EffectiveTimeStep":
             return _core.find_time_step(self.MODEL, self.settings)
         return ModelFilter.find_number(self, name)
-
-    def may_refine_automatically(self) -> bool:
-        return True
 
     def find_refinement(self, mean: float) -> tuple[float, str]:
         if self.own["RefineTo"] != -1.0:

@@ -78,11 +78,16 @@ class Shapes:
 
 def _contents(data: Any) -> bytes:
     """A hash of what a shape depends on."""
-    found = hashlib.blake2b(digest_size=16)
     arrays = [data.GetPoints().GetData(), data.GetPointGhostArray(), data.GetCellGhostArray()]
     for cells in (data.GetVerts(), data.GetLines(), data.GetPolys(), data.GetStrips()):
         has_cells = cells is not None and cells.GetNumberOfCells() > 0
         arrays += [cells.GetConnectivityArray(), cells.GetOffsetsArray()] if has_cells else [None, None]
+    return hash_arrays(arrays)
+
+
+def hash_arrays(arrays: list[Any]) -> bytes:
+    """A hash of the contents of arrays, of which each may be None."""
+    found = hashlib.blake2b(digest_size=16)
     for array in arrays:
         values = None if array is None else to_numpy(array)
         found.update(b"-" if values is None else f"{values.dtype} {values.shape}".encode())
