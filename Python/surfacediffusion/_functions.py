@@ -184,12 +184,11 @@ def _run(
         return runner.finish(run, [given], lambda found: make(run, found[0]), progress, history)
 
 
-#: The arguments of functions of data in time steps beside the settings: type and default.
+#: The arguments of functions of data in time steps beside the settings, with their types.
 _ARGUMENTS = {
-    "on_faces": ("bool | None", None), "mask": ("ArrayLike | None", None), "roi": ("ArrayLike | None", None),
-    "directions": ("ArrayLike | None", None), "fixed": ("ArrayLike | None", None),
-    "fidelity": ("ArrayLike | None", None), "rates": ("ArrayLike | None", None), "dtype": ("Any", None),
-    "progress": ("Progress", False)}
+    "on_faces": "bool | None",
+    **dict.fromkeys(("mask", "roi", "directions", "fixed", "fidelity", "rates"), "ArrayLike | None"),
+    "dtype": "Any", "progress": "Progress"}
 
 
 def _of_data(result_class: type[Result]) -> Callable[[F], F]:
@@ -201,8 +200,9 @@ def _of_data(result_class: type[Result]) -> Callable[[F], F]:
         surface, data, properties = own.parameters.values()
         without = ("on_faces", "fidelity") if data.name == "initial" else ("rates",)
         signature = own.replace(parameters=[surface, data, *(
-            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
-            for name, (kind, default) in _ARGUMENTS.items() if name not in without), properties])
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind,
+                              default=False if name == "progress" else None)
+            for name, kind in _ARGUMENTS.items() if name not in without), properties])
 
         @functools.wraps(function)
         def run(*arguments: Any, **keywords: Any) -> Any:

@@ -451,7 +451,6 @@ class _Block:
         self.empty = len(faces) == 0
         if not self.empty:
             self.surface = Surface(mesh.points, faces)
-        self.given: Input | None = None
         self.refined: RefinedSurface | None = None  #: that has made the mesh from the input
         self.name = ""  #: of the data, if they are an array of the mesh or of samples
         self.on_faces = False  #: the data are a cell array

@@ -15,12 +15,14 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
+from .._models import Output
 from .._polydata import ABSENT, SurfaceError, cell_flags
 from .._refinement import mean_edge_length
 from ._fields import (
-    BY_INDEX, FLAGS, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, read_fields)
+    BY_INDEX, FLAGS, Choice, Fields, find_array, find_disagreement, join_sentences, read_fields)
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement
+from ._results import write_outputs
 from ._surfaces import Block, Parts, Shapes, copy_structure, hash_arrays
 
 #: Properties that are no settings of the extension, with their defaults.
@@ -73,6 +75,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     RESULT_NAME = ""
 
     HAS_POINT_INPUT = False
+    RUN: Any = None  #: the class of its runs
+    NAMED_AFTER = ""  #: the array of the fields that results are named after
     MAY_REFINE_AUTOMATICALLY = False  #: whether RefineTo may be -1
     RULES = {1: "mask", 3: "mark", 5: "weight", 6: "mark"}  #: of refinement, by the index of an array
     DEFAULT_CHOICE: Choice | None = None
@@ -84,6 +88,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self.own = {**_OWN, "ResultArrayName": self.RESULT_NAME}
         self.choices: dict[int, Choice] = {}
         self.shapes = Shapes()
+        self._run = self.RUN(self.MODEL)
         self._numbers: dict[str, Any] = {}
         self._reported: list[str] = []
         self._warnings: list[str] = []  # of this class, in the present update
@@ -222,6 +227,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     def ReleaseCache(self) -> None:
         """Free what is kept from one update to the next."""
         self.shapes = Shapes()
+        self._run.clear()
 
     @staticmethod
     def _find_input(inputs: Any, port: int) -> Any:
@@ -252,12 +258,20 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         blocks = self._select(blocks, parts, problems)
         # Problems of the arrays are reported with those of the settings.
         self.begin(inputs)
-        fields = self._find_all(blocks, problems)
+        problems += [spell(words) for words in _core.find_problems(self.MODEL, self.settings, None)]
+        found = self._find_all(blocks, problems)
         if problems:
             return "; ".join(sorted(set(problems)))
-        blocks = [block for block, _ in fields]
-        of_blocks = [found for _, found in fields]
-        replaced, warnings = self.run(request, outputs, blocks, of_blocks, made)
+        self._run.update([fields.given.core for _, fields in found], self.settings, self.progress)
+        self.seek(request, outputs)
+        self.progress(0.95)  # the last chance to abort
+        results, replaced = [], []
+        for number, (block, fields) in enumerate(found):
+            results.append(self.read_outputs(number, block, fields))
+            data = getattr(fields, self.NAMED_AFTER).values if self.NAMED_AFTER else None
+            replaced += write_outputs(results[-1], fields, data, block, self.own["ResultArrayName"])
+        replaced += self.write_tables([block for block, _ in found], results, made)
+        self._numbers = self._run.numbers()
         for surface in stitched:
             scatter_results(surface)
             self.complete_pieces(surface)
@@ -266,7 +280,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             self._warnings.insert(0, f"results replace arrays of the input: {names}; to keep these, set "
                                   "another ResultArrayName")
         self._warnings += self._of_surfaces
-        self._report_warnings(warnings)
+        self._report_warnings([spell(words) for words in self._run.new_warnings()])
         self.UpdateProgress(1.0)
         return ""
 
@@ -286,12 +300,16 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self.find_arrays(block, fields, sorted(self.ARRAYS))
         return fields.data.values is not None or 0 not in self.ARRAYS
 
-    def run(
-        self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
-    ) -> tuple[list[str], list[str]]:
-        """Compute and write. Return the names of arrays that results have replaced, and the warnings that
-        hold now and did not hold before."""
+    def seek(self, request: Any, outputs: Any) -> None:
+        """Go to the step that is asked for."""
+
+    def read_outputs(self, number: int, block: Block, fields: Fields) -> list[Output]:
+        """Return the outputs of the run on a block."""
         raise NotImplementedError
+
+    def write_tables(self, blocks: list[Block], results: list[list[Output]], made: list[Any]) -> list[str]:
+        """Fill the further outputs. Return the names of arrays that were replaced."""
+        return []
 
     def _check_own(self) -> list[str]:
         own, problems = self.own, []
@@ -369,9 +387,10 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         raise NotImplementedError
 
     def find_arrays(self, block: Block, fields: Fields, indices: Iterable[int]) -> None:
-        arrays = ArrayFinder(self.choices, block.input, fields)
         for index in indices:
-            setattr(fields, BY_INDEX[index], arrays.find(index, *self.ARRAYS[index]))
+            choice = self.choices.get(index, Choice())
+            setattr(fields, BY_INDEX[index],
+                    find_array(choice, index, *self.ARRAYS[index], block.input, fields))
 
     def check(self, found: list[tuple[Block, Fields]], problems: list[str]) -> None:
         """Append the problems of the settings with the arrays of each block."""
@@ -395,9 +414,6 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                 self.SetAbortOutput(False)  # the executive would empty the output
         if aborted:
             raise _Aborted
-
-    def set_numbers(self, numbers: dict[str, Any]) -> None:
-        self._numbers = numbers
 
     def _report_error(self, text: str) -> None:
         self._quiet_executive()

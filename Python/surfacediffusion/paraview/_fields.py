@@ -88,57 +88,49 @@ class Fields:
         return "" if array is None else array.GetName() or ""
 
 
-class ArrayFinder:
-    """Finds the arrays of a block that were chosen."""
+def find_array(choice: Choice, index: int, name: str, components: int, block: Any, fields: Fields) -> Array:
+    """The array that was chosen, if a block has it. Appends problems."""
+    if not choice.is_set and index != 0:
+        return Array()
+    label = f'{name} "{choice.name}"' if choice.name else name
+    if choice.association not in (POINTS, CELLS, POINTS_THEN_CELLS):
+        fields.problems.append(
+            f"{label} has association {choice.association}; allowed: points (0) or cells (1)")
+        return Array()
+    found, on_cells = choice.locate(block)
+    if not isinstance(found, vtkDataArray):
+        problem = (_describe_absence(choice, block) if found is None else
+                   f"is a {found.GetClassName()}; allowed: numeric arrays")
+        fields.absent[index] = (label, f"{label} {problem}")
+        return Array()
+    tuples = block.GetNumberOfCells() if on_cells else block.GetNumberOfPoints()
+    size = found.GetNumberOfComponents()
+    if found.GetNumberOfTuples() != tuples:
+        fields.problems.append(f"{label} has {found.GetNumberOfTuples()} tuples; allowed: {tuples}, one per "
+                               + ("cell" if on_cells else "point"))
+        return Array()
+    if size < 1 if components == ANY else size != components:
+        unset = "" if choice.name else "is not set, and the active array " + (
+            f'"{found.GetName()}" ' if found.GetName() else "")
+        fields.problems.append(f"{label} {unset}has {size} components; allowed: "
+                               + ("1 or more" if components == ANY else str(components)))
+        return Array()
+    return Array(found, on_cells)
 
-    def __init__(self, choices: dict[int, Choice], block: Any, fields: Fields) -> None:
-        self._choices, self._block, self._fields = choices, block, fields
 
-    def find(self, index: int, name: str, components: int) -> Array:
-        choice = self._choices.get(index, Choice())
-        if not choice.is_set and index != 0:
-            return Array()
-        label = f'{name} "{choice.name}"' if choice.name else name
-        problems = self._fields.problems
-        if choice.association not in (POINTS, CELLS, POINTS_THEN_CELLS):
-            problems.append(f"{label} has association {choice.association}; allowed: points (0) or cells (1)")
-            return Array()
-        block = self._block
-        found, on_cells = choice.locate(block)
-        if found is None:
-            self._fields.absent[index] = (label, f"{label} {self._describe_absence(choice)}")
-            return Array()
-        if not isinstance(found, vtkDataArray):
-            problem = f"{label} is a {found.GetClassName()}; allowed: numeric arrays"
-            self._fields.absent[index] = (label, problem)
-            return Array()
-        tuples = block.GetNumberOfCells() if on_cells else block.GetNumberOfPoints()
-        if found.GetNumberOfTuples() != tuples:
-            problems.append(f"{label} has {found.GetNumberOfTuples()} tuples; allowed: {tuples}, one per "
-                            + ("cell" if on_cells else "point"))
-            return Array()
-        size = found.GetNumberOfComponents()
-        if size < 1 if components == ANY else size != components:
-            unset = "" if choice.name else "is not set, and the active array " + (
-                f'"{found.GetName()}" ' if found.GetName() else "")
-            problems.append(f"{label} {unset}has {size} components; allowed: "
-                            + ("1 or more" if components == ANY else str(components)))
-            return Array()
-        return Array(found, on_cells)
-
-    def _describe_absence(self, choice: Choice) -> str:
-        on_points, on_cells = choice.association != CELLS, choice.association != POINTS
-        kind = "point or cell" if on_points and on_cells else "cell" if on_cells else "point"
-        if not choice.name:
-            attribute = vtkDataSetAttributes.GetAttributeTypeAsString(
-                choice.attribute or vtkDataSetAttributes.SCALARS)
-            return (f"is not set and the input has no active {kind} {attribute}; choose a {kind} array")
-        text = f"is not among the {kind} arrays of the input; choose one of them"
-        if not on_cells and self._block.GetCellData().HasArray(choice.name):
-            return text + ", or association 1 for the cell array of this name"
-        if not on_points and self._block.GetPointData().HasArray(choice.name):
-            return text + ", or association 0 for the point array of this name"
-        return text
+def _describe_absence(choice: Choice, block: Any) -> str:
+    on_points, on_cells = choice.association != CELLS, choice.association != POINTS
+    kind = "point or cell" if on_points and on_cells else "cell" if on_cells else "point"
+    if not choice.name:
+        attribute = vtkDataSetAttributes.GetAttributeTypeAsString(
+            choice.attribute or vtkDataSetAttributes.SCALARS)
+        return (f"is not set and the input has no active {kind} {attribute}; choose a {kind} array")
+    text = f"is not among the {kind} arrays of the input; choose one of them"
+    if not on_cells and block.GetCellData().HasArray(choice.name):
+        return text + ", or association 1 for the cell array of this name"
+    if not on_points and block.GetPointData().HasArray(choice.name):
+        return text + ", or association 0 for the point array of this name"
+    return text
 
 
 def find_disagreement(choices: dict[int, Choice], blocks: list[Block]) -> str:
