@@ -508,7 +508,8 @@ class _Block:
         given, made = ((mesh.cell_data if on_faces else mesh.point_data) for mesh in (self.input, self.mesh))
         array = given.VTKObject.GetAbstractArray(self.name) if self.name else None
         if on_faces:
-            cells = (np.array(given[self.name], dtype=rows.dtype) if output.kind == "data" and array else
+            cells = (np.array(given[self.name], dtype=rows.dtype)
+                     if output.kind == "data" and array is not None else
                      np.zeros((self.mesh.n_cells, *rows.shape[1:]), dtype=rows.dtype))
             cells[self.face_cells] = rows
             rows = cells
@@ -516,7 +517,8 @@ class _Block:
         if not output.role:
             return
         of_normals = self.computed or self.name == given.active_normals_name
-        role = attribute_of(output, of_normals, bool(array) and array.GetDataType() == VTK_UNSIGNED_CHAR)
+        of_bytes = array is not None and array.GetDataType() == VTK_UNSIGNED_CHAR
+        role = attribute_of(output, of_normals, of_bytes)
         if role == vtkDataSetAttributes.NORMALS:
             made.VTKObject.SetActiveNormals(name)
             return
