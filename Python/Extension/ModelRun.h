@@ -35,7 +35,6 @@ public:
   void Clear() { this->Model.Clear(); }
 
   int NumberOfSteps() const { return this->Settings->DescribeModel().NumberOfSteps; }
-  double TimeStep() const { return this->Settings->DescribeModel().TimeStep; }
   /// The last step of a run that may end early, for which it is computed to its end.
   int FindLastStep(const nanobind::object& progress);
   /// All warnings that hold, as lists of words.

@@ -10,7 +10,7 @@ from typing import Any, Callable, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._functions import SHARED, derivatives, find_derivatives
+from ._functions import SHARED, derivatives
 from ._result import ConductionVelocity
 from ._surface import SurfaceLike
 
@@ -184,7 +184,5 @@ def conduction_velocity(surface: SurfaceLike, times: ArrayLike, **others: Any) -
     >>> float(found.speed.round(6).min()), found.velocity.shape
     (0.6, (200, 3))
     """
-    given = [others.pop(name, None) for name in ("on_faces", "mask", "roi", "progress")]
-    found = find_derivatives(surface, times, *given, {"quantity": "ConductionVelocity", **others})
-    assert found.speed is not None
+    found: Any = derivatives(surface, times, quantity="ConductionVelocity", _outputs=[], **others)
     return ConductionVelocity(found.values, found.speed)

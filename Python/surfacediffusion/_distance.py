@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._functions import _run_once, left_out
+from ._functions import run_once
 from ._models import ARRAYS
 from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, interpolate_points, take_along
 from ._run import Input, Progress, ProgressReporter, Runner, warn
-from ._settings import settings_of, shorten
-from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place
+from ._settings import as_number, settings_of, shorten
+from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place, left_out
 
 __all__ = ["NearestSources", "distance", "distances", "nearest_sources"]
 
@@ -197,11 +197,10 @@ maximum_distance, merge_coincident_points, merge_tolerance, progress, refine_to,
         rows, places = None, np.einsum("ki,kij->kj", places, given.points[given.triangles[rows]])
     inputs = _make_input(surface, **carried)
     inputs.core.set_sources(places, None, None, rows, times)
-    runner = Runner("distance", {
+    outputs, _ = run_once("distance", inputs, {
         "method": method, "along_speed": along_speed, "across_speed": across_speed,
         "maximum_distance": maximum_distance, "merge_coincident_points": merge_coincident_points,
-        "merge_tolerance": merge_tolerance}, _ARRAYS)
-    outputs, _ = _run_once("distance", inputs, runner, progress)
+        "merge_tolerance": merge_tolerance}, _ARRAYS, progress)
     found = {output.name: output.values for output in outputs}
     source = found["NearestSource"].astype(np.int64)
     source = np.where(source < 0, -1, names[source])
@@ -268,9 +267,7 @@ progress
     """
     sparse = import_sparse("distances")
     surface = as_surface(surface)
-    if isinstance(cutoff, bool) or not isinstance(
-            cutoff, (int, float, np.number)) or not cutoff > 0.0:
-        raise ValueError(f"cutoff is {shorten(cutoff)}; allowed: numbers above 0")
+    cutoff = as_number("cutoff", cutoff, "numbers above 0", lambda number: number > 0.0)
     rows: Any = None
     if sources is not None:
         _, rows, places = _as_sources(surface, sources)
@@ -282,7 +279,7 @@ progress
         "merge_coincident_points": merge_coincident_points, "merge_tolerance": merge_tolerance}, _ARRAYS)
     with surface._lock, ProgressReporter(progress) as reporter:
         run = surface._runs.setdefault("distance", _core.SurfaceRuns("distance"))
-        entries = runner.call(run.find_each, inputs.core, runner.settings, rows, float(cutoff),
+        entries = runner.call(run.find_each, inputs.core, runner.settings, rows, cutoff,
                               reporter.callable)
         sentences = runner.warnings(run)
         reporter.finish_part()
@@ -327,7 +324,8 @@ def _as_sources(surface: Surface, sources: Any) -> tuple[bool, Any, Any]:
             raise ValueError(f"sources is {shorten(sources)}; allowed: {surface.n_points} flags, one per "
                              "point, at least one of them True")
         return True, np.flatnonzero(marks), None
-    return False, _as_rows(surface, sources), None
+    return False, _as_rows("sources", sources, surface.n_points, "points", (
+        "; flags, one per point; coordinates, (k, 3); or faces with barycentric coordinates")), None
 
 
 def _count_axes(values: Any) -> int:
@@ -337,16 +335,13 @@ def _count_axes(values: Any) -> int:
         return 0
 
 
-def _as_rows(surface: Surface, sources: Any) -> NDArray[np.int64]:
-    rows = np.atleast_1d(as_numbers("sources", sources))
+def _as_rows(name: str, values: Any, count: int, what: str, also: str = "") -> NDArray[np.int64]:
+    rows = np.atleast_1d(as_numbers(name, values))
     if rows.ndim != 1 or rows.size == 0 or rows.dtype.kind not in "iu":
-        raise ValueError(f"sources is {shorten(sources)}; allowed: rows of points, one or more "
-                         "integers; flags, one per point; coordinates, (k, 3); or faces with barycentric "
-                         "coordinates")
-    outside = (rows < 0) | (rows >= surface.n_points)
+        raise ValueError(f"{name} is {shorten(values)}; allowed: rows of {what}, one or more integers{also}")
+    outside = (rows < 0) | (rows >= count)
     if outside.any():
-        raise ValueError(f"sources has {rows[outside][0]}; allowed: 0 to {surface.n_points - 1}, the "
-                         "rows of points")
+        raise ValueError(f"{name} has {rows[outside][0]}; allowed: 0 to {count - 1}, the rows of {what}")
     return np.ascontiguousarray(rows, dtype=np.int64)
 
 
@@ -354,13 +349,7 @@ def _as_places_in_triangles(
     surface: Surface, faces: Any, barycentric: Any
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Rows of surface.triangles, and barycentric coordinates."""
-    rows = np.atleast_1d(as_numbers("sources[0]", faces))
-    if rows.ndim != 1 or rows.size == 0 or rows.dtype.kind not in "iu":
-        raise ValueError(f"sources[0] is {shorten(faces)}; allowed: rows of faces, one or more integers")
-    outside = (rows < 0) | (rows >= surface.n_faces)
-    if outside.any():
-        raise ValueError(f"sources[0] has {rows[outside][0]}; allowed: 0 to {surface.n_faces - 1}, the "
-                         "rows of faces")
+    rows = _as_rows("sources[0]", faces, surface.n_faces, "faces")
     weights = np.ascontiguousarray(as_numbers("sources[1]", barycentric), dtype=np.float64)
     if weights.shape != (len(rows), 3):
         raise ValueError(f"sources[1] has shape {weights.shape}; allowed: ({len(rows)}, 3), one row per "

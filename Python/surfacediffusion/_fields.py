@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._functions import left_out
-from ._run import Progress, ProgressReporter, part_of, warn, warn_of_seams
-from ._settings import check_positive, convert_all, shorten, spell
-from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place, place
+from ._run import Progress, ProgressReporter, check_parts, part_of, warn
+from ._settings import as_integer, as_number, as_switch, convert_all, shorten, spell
+from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place, left_out, place
 
 __all__ = ["Surrogates", "random_field", "surrogates"]
 
@@ -126,26 +125,25 @@ def random_field(
         found = "both given" if widths else "not given"
         raise ValueError(f"fwhm and range are {found}; allowed: one of them")
     (name, width), = widths
-    check_positive(name, width)
+    width = as_number(name, width)
     if isinstance(nu, bool) or not isinstance(nu, (int, np.integer)) or nu not in (1, 3):
         raise ValueError(f"nu is {shorten(nu)}; allowed: 1 and 3")
     if fwhm is not None and nu != 1:
         raise ValueError(f"nu is {shorten(nu)}; allowed: 1, or range in place of fwhm")
-    _check_count("n", n, 1)
-    _check_count("first", first, 0)
-    _check_seed(seed)
-    if not isinstance(normalize, (bool, np.bool_)):
-        raise ValueError(f"normalize is {shorten(normalize)}; allowed: True or False")
+    n = _as_count("n", n, 1)
+    first = _as_count("first", first, 0)
+    seed = as_integer("seed", seed, -2**63, 2**63 - 1, "whole numbers of 64 bits")
+    normalize = as_switch("normalize", normalize)
     merging = convert_all("random_field", {"merge_coincident_points": merge_coincident_points,
                                            "merge_tolerance": merge_tolerance})
     for problem in _core.find_problems("random_field", merging, None):
         raise ValueError(spell("random_field", problem, {}))
     fields = make_fields(surface, left_out(mask, roi, surface), *merging.values())
-    warn_of_edges(name, float(width), fields)
+    warn_of_edges(name, width, fields)
     result = np.empty((surface.n_points, n))
     with surface._lock, ProgressReporter(progress) as reporter:
-        _draw(fields, float(width), 0 if fwhm is not None else int(nu), int(seed), int(first),
-              bool(normalize), result, reporter.callable)
+        _draw(fields, width, 0 if fwhm is not None else int(nu), seed, first, normalize, result,
+              reporter.callable)
         reporter.finish_part()
     return result
 
@@ -239,14 +237,14 @@ def surrogates(
     check_finite("values", given)
     if np.isnan(given).all():
         raise ValueError("values has no known value: it is NaN everywhere; allowed: maps with known values")
-    _check_count("n", n, 1)
-    _check_seed(seed)
+    n = _as_count("n", n, 1)
+    seed = as_integer("seed", seed, -2**63, 2**63 - 1, "whole numbers of 64 bits")
     fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), given))
     areas = fields.areas()
     known = areas > 0.0
     if len(np.unique(given[known])) < 2:
         raise ValueError("values is constant; allowed: values that differ")
-    model = _Model(fields, areas, int(seed))
+    model = _Model(fields, areas, seed)
     with surface._lock, ProgressReporter(progress, 2 * len(model.widths)) as reporter:
         variances = model.fit(_normal_scores(given, known), reporter)
         result = model.draw(variances, n, reporter)
@@ -375,10 +373,7 @@ def make_fields(surface: Surface, mask: Any, merges: bool = False, tolerance: fl
         if version != known:
             fields = _core.SurfaceFields(surface._core, flags, on_faces, merges, tolerance, None)
             surface._runs["fields"] = version, fields
-    if fields.number_of_vertices() == 0:
-        raise ValueError("no triangle of the surface is left; allowed: one or more that are not masked "
-                         "and have an area")
-    warn_of_seams(fields, "nothing flows between them")
+    check_parts(fields)
     return fields
 
 
@@ -439,14 +434,5 @@ def warn_of_solves(residual: float) -> None:
         warn([f"the linear solver missed its tolerance; the largest relative residual is {residual:g}"])
 
 
-def _check_count(name: str, value: Any, smallest: int) -> None:
-    if isinstance(value, (bool, np.bool_)) or not isinstance(
-            value, (int, np.integer)) or not smallest <= value < _STREAM // 2:
-        raise ValueError(f"{name} is {shorten(value)}; allowed: whole numbers, {smallest} or more, below "
-                         "2^39")
-
-
-def _check_seed(seed: Any) -> None:
-    if isinstance(seed, (bool, np.bool_)) or not isinstance(
-            seed, (int, np.integer)) or not -2**63 <= seed < 2**63:
-        raise ValueError(f"seed is {shorten(seed)}; allowed: whole numbers of 64 bits")
+def _as_count(name: str, value: Any, smallest: int) -> int:
+    return as_integer(name, value, smallest, _STREAM // 2 - 1, f"whole numbers, {smallest} or more, below 2^39")

@@ -5,19 +5,17 @@ keywords are made from the settings that the C++ library declares."""
 
 from __future__ import annotations
 
+import functools
 import inspect
 import textwrap
 from dataclasses import replace
-from typing import Any, Callable, TypeVar
+from typing import Any, Callable, Mapping, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._models import (
-    ARRAYS, Output, as_initial, as_samples, as_vectors, check_colors, find_outputs, make_result,
-    read_outputs,
-)
+from ._models import ARRAYS, Output, as_mask, as_samples, find_outputs, make_result, read_outputs, take_data
 from ._refinement import document_keywords, keywords_of, with_refinement
 from ._result import (
     CurvatureResult, DerivativesResult, DiffusionResult, EdgeResult, HarmonicMapResult,
@@ -28,10 +26,7 @@ from ._run import (
     Input, Progress, ProgressReporter, Runner, States, find_result_type, take_old_switch, warn,
 )
 from ._settings import settings_of, shorten, spell_documentation
-from ._surface import (
-    Surface, SurfaceLike, as_data, as_numbers, as_outside, as_surface, find_on_faces, has_integers,
-    place,
-)
+from ._surface import SurfaceLike, as_numbers, as_surface, left_out, place
 
 __all__ = [
     "curvature", "denoise_mesh", "derivatives", "direction_field", "harmonic_map", "heat", "interpolate",
@@ -189,57 +184,58 @@ def _run(
         return runner.finish(run, [given], lambda found: make(run, found[0]), progress, history)
 
 
-def _take(name: str, values: Any, surface: Surface, on_faces: bool | None) -> tuple[Any, bool]:
-    """The data, and whether they are on faces."""
-    found = find_on_faces(name, values, surface, on_faces)
-    if not found:
-        return as_data(name, values, surface.n_points), False
-    return as_data(name, values, surface.n_faces, "face"), True
+#: The arguments of functions of data in time steps beside the settings, with their types.
+_ARGUMENTS = {
+    "on_faces": "bool | None",
+    **dict.fromkeys(("mask", "roi", "directions", "fixed", "fidelity", "rates"), "ArrayLike | None"),
+    "dtype": "Any", "progress": "Progress"}
 
 
-def exclude_outside(mask: Any, properties: dict[str, Any]) -> None:
-    """Set mask_mode for a region of interest, beside which no mask is given."""
-    if mask is not None:
-        raise ValueError("mask and roi are both given; allowed: one of them")
-    mode = properties.setdefault("mask_mode", "Exclude")
-    if mode not in ("Exclude", "exclude"):
-        raise ValueError(f"mask_mode is {shorten(mode)} with roi; allowed with roi: Exclude")
+def _of_data(result_class: type[Result]) -> Callable[[F], F]:
+    """Give a function of data in time steps, which has the surface and the data, its other arguments and
+    its body."""
 
+    def complete(function: F) -> F:
+        own = inspect.signature(function)
+        surface, data, properties = own.parameters.values()
+        without = ("on_faces", "fidelity") if data.name == "initial" else ("rates",)
+        signature = own.replace(parameters=[surface, data, *(
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=kind,
+                              default=False if name == "progress" else None)
+            for name, kind in _ARGUMENTS.items() if name not in without), properties])
 
-def _as_mask(mask: Any, roi: Any, surface: Surface, properties: dict[str, Any]) -> Any:
-    """The mask, or that of the region of interest, which sets mask_mode."""
-    if roi is None:
-        return mask
-    exclude_outside(mask, properties)
-    outside = as_outside(roi, surface.n_points, surface.n_faces)
-    return outside if outside.any() else None
+        @functools.wraps(function)
+        def run(*arguments: Any, **keywords: Any) -> Any:
+            given = signature.bind(*arguments, **keywords)
+            given.apply_defaults()
+            return _diffusion(function.__name__, data.name, result_class, *given.args, **given.kwargs)
 
+        run.__signature__ = signature  # type: ignore[attr-defined]
+        return run  # type: ignore[return-value]
 
-def _in_shape(values: NDArray[Any], given: Any) -> NDArray[Any]:
-    """The values with one dimension if the given ones have one."""
-    return values[:, 0] if np.ndim(given) == 1 else values
+    return complete
 
 
 def _diffusion(
-    name: str, result_class: type[Result], surface: Any, values: Any, on_faces: Any, mask: Any, roi: Any,
-    directions: Any, fixed: Any, fidelity: Any, dtype: Any, progress: Progress, properties: dict[str, Any],
+    name: str, data_name: str, result_class: type[Result], surface: Any, values: Any, *, mask: Any, roi: Any,
+    directions: Any, fixed: Any, dtype: Any, progress: Progress, on_faces: Any = None, fidelity: Any = None,
+    rates: Any = None, **properties: Any,
 ) -> Any:
     form = _find_form(properties, name)
     surface = as_surface(surface)
-    data, on_faces = _take("values", values, surface, on_faces)
+    data, on_faces, integers = take_data(name, surface, values, on_faces)
     find_result_type(data, dtype)
-    mask = _as_mask(mask, roi, surface, properties)
-    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
-                  directions=directions, fidelity=fidelity, integers=has_integers(values),
+    given = Input(surface, data, data_on_faces=on_faces, mask=as_mask(mask, roi, surface, properties),
+                  fixed=fixed, directions=directions, fidelity=fidelity, rates=rates, integers=integers,
                   refined=properties.pop("_refined", None))
-    runner = Runner(name, properties, ARRAYS)
+    runner = Runner(name, properties, {**ARRAYS, "InputArray": data_name})
 
     def make(run: Any, found: dict[str, Any]) -> Any:
-        result = make_result(result_class, find_outputs(run, 0, given, runner, dtype), found)
-        return replace(result, values=_in_shape(result.values, values))
+        result = make_result(result_class, find_outputs(run, 0, given, dtype, runner.call), found, surface)
+        return replace(result, values=result.values[:, 0]) if np.ndim(values) == 1 else result
 
     is_array = name in _ARRAYS_ALONE and not form
-    if data.shape[1] > PANEL and is_array and _core.has_independent_columns(name, runner.settings):
+    if is_array and data.shape[1] > PANEL and _core.has_independent_columns(name, runner.settings):
         stays = on_faces and runner.settings.get("ResultOnCells", True)
         rows = surface.n_faces if stays else surface.n_points
         output = np.empty((rows, data.shape[1]), dtype=find_result_type(data, dtype))
@@ -251,21 +247,43 @@ def _diffusion(
     return result.values if is_array else result
 
 
+def _find(name: str, result_class: Any, given: Input, properties: dict[str, Any], progress: Progress) -> Any:
+    """The result of a model of data without time steps. `_outputs`: a list that gets the outputs, which have
+    the type of the data then."""
+    listed = properties.pop("_outputs", None)
+    runner = Runner(name, properties, ARRAYS)
+
+    def make(run: Any, found: dict[str, Any]) -> Any:
+        outputs = find_outputs(run, 0, given, np.float64 if listed is None else None, runner.call)
+        if listed is not None:
+            listed.extend(outputs)
+        return make_result(result_class, outputs, found, given.surface)
+
+    return _run(name, given, runner, make, "", progress)
+
+
+def run_once(
+    name: str, given: Input, properties: dict[str, Any], arrays: Mapping[str, str], progress: Progress
+) -> tuple[list[Output], dict[str, Any]]:
+    """The outputs of a computation without a model, and the attributes of its result. `_outputs`: a list that
+    gets the outputs, too."""
+    listed = properties.pop("_outputs", [])
+    runner, surface = Runner(name, properties, arrays), given.surface
+    with surface._lock, ProgressReporter(progress) as reporter:
+        run = surface._runs.setdefault(name, _core.SurfaceRuns(name))
+        runner.call(run.update, [given.core], runner.settings, reporter.callable)
+        outputs = read_outputs(run.outputs(0), functools.partial(runner.call, run.write, 0), given)
+        found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run),
+                 "turned": run.turned_triangles(0)}
+        reporter.finish_part()  # last, because the callable may use the run
+    warn(found["warnings"])
+    listed.extend(outputs)
+    return outputs, found
+
+
 @_with_settings
-def heat(
-    surface: SurfaceLike,
-    values: ArrayLike,
-    *,
-    on_faces: bool | None = None,
-    mask: ArrayLike | None = None,
-    roi: ArrayLike | None = None,
-    directions: ArrayLike | None = None,
-    fixed: ArrayLike | None = None,
-    fidelity: ArrayLike | None = None,
-    dtype: Any = None,
-    progress: Progress = False,
-    **properties: Any,
-) -> NDArray[Any]:
+@_of_data(DiffusionResult)
+def heat(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> NDArray[Any]:
     """Smooth, denoise or inpaint data on a surface by linear diffusion.
 
     Solves u_t = div(D grad u) + lambda chi (f - u), u(0) = f, with no flux across the boundary. D
@@ -330,25 +348,12 @@ def heat(
     >>> bool(np.array_equal(region[~north], noise[~north]))
     True
     """
-    return _diffusion("heat", DiffusionResult, surface, values, on_faces, mask, roi, directions, fixed,
-                      fidelity, dtype, progress, properties)
+
 
 
 @_with_settings
-def intrinsic_tv(
-    surface: SurfaceLike,
-    values: ArrayLike,
-    *,
-    on_faces: bool | None = None,
-    mask: ArrayLike | None = None,
-    roi: ArrayLike | None = None,
-    directions: ArrayLike | None = None,
-    fixed: ArrayLike | None = None,
-    fidelity: ArrayLike | None = None,
-    dtype: Any = None,
-    progress: Progress = False,
-    **properties: Any,
-) -> NDArray[Any]:
+@_of_data(DiffusionResult)
+def intrinsic_tv(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> NDArray[Any]:
     """Denoise or inpaint data on a surface and preserve their edges.
 
     Solves u_t = div(g(abs(grad u)) grad u) + lambda chi (f - u), u(0) = f, by default with the g of
@@ -384,25 +389,12 @@ def intrinsic_tv(
     >>> bool(result.effective_fidelity_weight > 0)
     True
     """
-    return _diffusion("intrinsic_tv", DiffusionResult, surface, values, on_faces, mask, roi, directions,
-                      fixed, fidelity, dtype, progress, properties)
+
 
 
 @_with_settings
-def tensor_diffusion(
-    surface: SurfaceLike,
-    values: ArrayLike,
-    *,
-    on_faces: bool | None = None,
-    mask: ArrayLike | None = None,
-    roi: ArrayLike | None = None,
-    directions: ArrayLike | None = None,
-    fixed: ArrayLike | None = None,
-    fidelity: ArrayLike | None = None,
-    dtype: Any = None,
-    progress: Progress = False,
-    **properties: Any,
-) -> NDArray[Any]:
+@_of_data(TensorDiffusionResult)
+def tensor_diffusion(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> NDArray[Any]:
     """Smooth data along their own edges or lines, with a diffusion tensor D that follows from them.
 
     Solves m u_t = div(D grad u) + lambda chi (f - u), u(0) = f. With T = sum over the components of
@@ -453,25 +445,12 @@ def tensor_diffusion(
     >>> bool(np.abs(smooth - clean).mean() < 0.6 * np.abs(noisy - clean).mean())
     True
     """
-    return _diffusion("tensor_diffusion", TensorDiffusionResult, surface, values, on_faces, mask, roi,
-                      directions, fixed, fidelity, dtype, progress, properties)
+
 
 
 @_with_settings
-def mumford_shah(
-    surface: SurfaceLike,
-    values: ArrayLike,
-    *,
-    on_faces: bool | None = None,
-    mask: ArrayLike | None = None,
-    roi: ArrayLike | None = None,
-    directions: ArrayLike | None = None,
-    fixed: ArrayLike | None = None,
-    fidelity: ArrayLike | None = None,
-    dtype: Any = None,
-    progress: Progress = False,
-    **properties: Any,
-) -> EdgeResult:
+@_of_data(EdgeResult)
+def mumford_shah(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> EdgeResult:
     """Find the edges of data on a surface, and smooth or inpaint the data between them.
 
     Minimises the functional of Mumford and Shah in the approximation of Ambrosio and Tortorelli
@@ -514,24 +493,13 @@ def mumford_shah(
     >>> bool(np.abs(result.values - clean).mean() < 0.2 * np.abs(noisy - clean).mean())
     True
     """
-    return _diffusion("mumford_shah", EdgeResult, surface, values, on_faces, mask, roi, directions, fixed,
-                      fidelity, dtype, progress, properties)
+
 
 
 @_with_settings
+@_of_data(HarmonicMapResult)
 def harmonic_map(
-    surface: SurfaceLike,
-    vectors: ArrayLike | None = None,
-    *,
-    on_faces: bool | None = None,
-    mask: ArrayLike | None = None,
-    roi: ArrayLike | None = None,
-    directions: ArrayLike | None = None,
-    fixed: ArrayLike | None = None,
-    fidelity: ArrayLike | None = None,
-    dtype: Any = None,
-    progress: Progress = False,
-    **properties: Any,
+    surface: SurfaceLike, vectors: ArrayLike | None = None, **properties: Any
 ) -> HarmonicMapResult:
     """Regularise normals or other unit vectors, or denoise the points of the surface.
 
@@ -573,20 +541,6 @@ def harmonic_map(
     >>> bool(np.linalg.norm(points, axis=1).std() < 0.5 * noise.std())
     True
     """
-    form = _find_form(properties, "harmonic_map")
-    surface = as_surface(surface)
-    on_faces = vectors is not None and find_on_faces("vectors", vectors, surface, on_faces)
-    data = as_vectors(surface, vectors, properties, on_faces)
-    find_result_type(data, dtype)
-    mask = _as_mask(mask, roi, surface, properties)
-    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fixed=fixed,
-                  directions=directions, fidelity=fidelity, integers=has_integers(vectors))
-    runner = Runner("harmonic_map", properties, {**ARRAYS, "InputArray": "vectors"})
-    return _run("harmonic_map", given, runner,
-                lambda run, found: make_result(
-                    HarmonicMapResult, find_outputs(run, 0, given, runner, dtype),
-                    {"points": np.array(surface.points), **found}),
-                form, progress)
 
 
 @_with_settings
@@ -665,11 +619,9 @@ def denoise_mesh(
     """
     take_old_switch(properties, "denoise_mesh", "full_output", "the result is always returned")
     surface = as_surface(surface)
-    runner = Runner("denoise_mesh", properties, {"FixedArray": "fixed"})
-    inputs = Input(surface, fixed=fixed)
-    outputs, found = _run_once("denoise_mesh", inputs, runner, progress)
-    result: MeshDenoisingResult = make_result(
-        MeshDenoisingResult, outputs, {"points": np.array(surface.points), **found})
+    outputs, found = run_once(
+        "denoise_mesh", Input(surface, fixed=fixed), properties, {"FixedArray": "fixed"}, progress)
+    result: MeshDenoisingResult = make_result(MeshDenoisingResult, outputs, found, surface)
     words = settings_of("denoise_mesh")["surface_type"].words
     return replace(result, surface_type=words[int(result.surface_type)])
 
@@ -732,35 +684,16 @@ def segment(
     >>> bool(abs(result.areas[1] - np.pi) < 0.05 * np.pi), len(result.boundaries)
     (True, 1)
     """
-    return segment_with_outputs(
-        surface, values, terms, on_faces, seeds, mask, roi, fidelity, progress, properties)[0]
-
-
-def segment_with_outputs(
-    surface: Any, values: Any, terms: Any, on_faces: Any, seeds: Any, mask: Any, roi: Any,
-    fidelity: Any, progress: Progress, properties: dict[str, Any], dtype: Any = np.float64,
-) -> tuple[SegmentationResult, list[Output]]:
-    """The result of segment(), and all outputs. dtype: of the values; None: that of the data."""
     surface = as_surface(surface)
     if (values is None) == (terms is None):
         alone = ", for seeds alone terms of 0, one column per region" if seeds is not None else ""
         raise ValueError("values and terms are " + ("both" if values is not None else "not") +
                          f" given; allowed: one of them{alone}")
-    name = "values" if terms is None else "terms"
-    array = values if terms is None else terms
-    data, on_faces = _take(name, array, surface, on_faces)
-    mask = _as_mask(mask, roi, surface, properties)
-    given = Input(surface, data, data_on_faces=on_faces, mask=mask, fidelity=fidelity, seeds=seeds,
-                  data_are_terms=terms is not None, integers=has_integers(array))
-    runner = Runner("segment", properties, ARRAYS)
-
-    def make(run: Any, found: dict[str, Any]) -> tuple[SegmentationResult, list[Output]]:
-        outputs = find_outputs(run, 0, given, runner, dtype)
-        return make_result(SegmentationResult, outputs, found), outputs
-
-    made: tuple[SegmentationResult, list[Output]] = _run(
-        "segment", given, runner, make, "", progress)
-    return made
+    name, array = ("values", values) if terms is None else ("terms", terms)
+    data, on_faces, integers = take_data("segment", surface, array, on_faces, name)
+    given = Input(surface, data, data_on_faces=on_faces, mask=as_mask(mask, roi, surface, properties),
+                  fidelity=fidelity, seeds=seeds, data_are_terms=terms is not None, integers=integers)
+    return _find("segment", SegmentationResult, given, properties, progress)
 
 
 @_with_settings
@@ -822,55 +755,29 @@ def interpolate(
     >>> bool(abs(result.values - ball.points[:, 2] ** 2).max() < 0.1), result.number_of_values
     (True, 60)
     """
-    return interpolate_with_outputs(
-        surface, values, points, on_faces, mask, roi, directions, fidelity, progress, properties)[0]
-
-
-def interpolate_with_outputs(
-    surface: Any, values: Any, points: Any, on_faces: Any, mask: Any, roi: Any, directions: Any,
-    fidelity: Any, progress: Progress, properties: dict[str, Any], dtype: Any = np.float64,
-) -> tuple[InterpolationResult, list[Output]]:
-    """The result of interpolate(), and all outputs. dtype: of the values; None: that of the data."""
     surface = as_surface(surface)
-    refined = properties.pop("_refined", None)
     if properties.get("exact") and properties.get("smoothing"):
         raise ValueError(f"smoothing is {shorten(properties['smoothing'])} and exact is True; allowed: one of "
                          "them")
-    mask = _as_mask(mask, roi, surface, properties)
+    refined = properties.pop("_refined", None)
+    mask = as_mask(mask, roi, surface, properties)
     if points is None:
-        data, on_faces = _take("values", values, surface, on_faces)
+        data, on_faces, integers = take_data("interpolate", surface, values, on_faces)
         given = Input(surface, data, data_on_faces=on_faces, mask=mask, directions=directions,
-                      fidelity=fidelity, integers=has_integers(values), refined=refined)
+                      fidelity=fidelity, integers=integers, refined=refined)
     else:
         given = Input(surface, mask=mask, directions=directions,
                       samples=as_samples(points, values, fidelity))
-    runner = Runner("interpolate", properties, ARRAYS)
-
-    def make(run: Any, found: dict[str, Any]) -> tuple[InterpolationResult, list[Output]]:
-        outputs = find_outputs(run, 0, given, runner, dtype)
-        result = make_result(InterpolationResult, outputs, found)
-        shape = (-1,) if np.ndim(values) == 1 else (len(result.values), -1)
-        return replace(result, values=result.values.reshape(shape),
-                       error=result.error.reshape(shape) if result.error.size else result.error), outputs
-
-    made: tuple[InterpolationResult, list[Output]] = _run(
-        "interpolate", given, runner, make, "", progress)
-    return made
+    result = _find("interpolate", InterpolationResult, given, properties, progress)
+    shape = (-1,) if np.ndim(values) == 1 else (len(result.values), -1)
+    return replace(result, values=result.values.reshape(shape),
+                   error=result.error.reshape(shape) if result.error.size else result.error)
 
 
 @_with_settings
+@_of_data(TextureResult)
 def turing_texture(
-    surface: SurfaceLike,
-    initial: ArrayLike | None = None,
-    *,
-    mask: ArrayLike | None = None,
-    roi: ArrayLike | None = None,
-    directions: ArrayLike | None = None,
-    fixed: ArrayLike | None = None,
-    rates: ArrayLike | None = None,
-    dtype: Any = None,
-    progress: Progress = False,
-    **properties: Any,
+    surface: SurfaceLike, initial: ArrayLike | None = None, **properties: Any
 ) -> TextureResult:
     """Grow a texture on a surface by reaction and diffusion.
 
@@ -909,28 +816,6 @@ def turing_texture(
     >>> result.values.shape, float(result.texture.min()), float(result.texture.max())
     ((2562, 2), 0.0, 1.0)
     """
-    form = _find_form(properties, "turing_texture")
-    surface = as_surface(surface)
-    data = as_initial(surface, initial)
-    find_result_type(data, dtype)
-    check_colors(properties)
-    mask = _as_mask(mask, roi, surface, properties)
-    given = Input(surface, data, mask=mask, fixed=fixed, directions=directions, rates=rates)
-    runner = Runner("turing_texture", properties, {**ARRAYS, "InputArray": "initial"})
-    return _run("turing_texture", given, runner,
-                lambda run, found: make_result(
-                    TextureResult, find_outputs(run, 0, given, runner, dtype),
-                    {**found, "surface": surface}),
-                form, progress)
-
-
-def left_out(mask: Any, roi: Any, surface: Surface) -> Any:
-    """The mask of a function that leaves masked parts out, or that of the region of interest."""
-    if roi is None:
-        return mask
-    if mask is not None:
-        raise ValueError("mask and roi are both given; allowed: one of them")
-    return as_outside(roi, surface.n_points, surface.n_faces)
 
 
 @_with_settings
@@ -995,10 +880,9 @@ def curvature(
     ((2562, 2), True)
     """
     surface = as_surface(surface)
-    runner = Runner("curvature", properties, {"MaskArray": "mask"})
-    inputs = Input(surface, mask=left_out(mask, roi, surface))
-    outputs, found = _run_once("curvature", inputs, runner, progress)
-    result: CurvatureResult = make_result(CurvatureResult, outputs, found)
+    given = Input(surface, mask=left_out(mask, roi, surface))
+    outputs, found = run_once("curvature", given, properties, {"MaskArray": "mask"}, progress)
+    result: CurvatureResult = make_result(CurvatureResult, outputs, found, surface)
     return result
 
 
@@ -1071,51 +955,20 @@ def derivatives(
     """
     whole = take_old_switch(properties, "derivatives", "full_output",
                             "the array is returned, and the speed by conduction_velocity()")
-    result = find_derivatives(surface, values, on_faces, mask, roi, progress, properties)
-    return result if whole else result.values  # type: ignore[return-value]
-
-
-def find_derivatives(
-    surface: Any, values: Any, on_faces: Any, mask: Any, roi: Any, progress: Progress,
-    properties: dict[str, Any],
-) -> DerivativesResult:
-    """The result of derivatives(), with the speed."""
     surface = as_surface(surface)
+    whole = whole or "_outputs" in properties
     name = properties.pop("_name", "values")
-    runner = Runner("derivatives", properties, {**ARRAYS, "InputArray": name})
     if properties.get("quantity", "") in ("Divergence", "divergence", "Curl", "curl"):
         shape, n, m = np.shape(as_numbers(name, values)), surface.n_points, surface.n_faces
         if len(shape) not in (1, 2) or shape[0] not in (n, m):
             raise ValueError(f"{name} has shape {shape}; allowed: ({n}, 3) or ({n}, 3 k), one row of 1 or k "
                              f"vectors per point, or ({m}, 3) or ({m}, 3 k), one per face")
-    data, faces = _take(name, values, surface, on_faces)
+    data, on_faces, _ = take_data("derivatives", surface, values, on_faces, name)
     data = data.astype(np.float64) if data.dtype == np.uint8 else data  # no colour, whose alpha is no data
-    inputs = Input(surface, data, data_on_faces=faces, mask=left_out(mask, roi, surface))
-    outputs, found = _run_once("derivatives", inputs, runner, progress)
-    result: DerivativesResult = make_result(DerivativesResult, outputs, {"speed": None, **found})
-    return result
-
-
-def _run_once(
-    name: str, inputs: Input, runner: Runner, progress: Progress
-) -> tuple[list[Output], dict[str, Any]]:
-    """The outputs of a computation without time steps, and the attributes of its result."""
-    surface = inputs.surface
-    with surface._lock, ProgressReporter(progress) as reporter:
-        if name not in surface._runs:
-            surface._runs[name] = _core.SurfaceRuns(name)
-        run = surface._runs[name]
-        runner.call(run.update, [inputs.core], runner.settings, reporter.callable)
-
-        def write(number: int, values: NDArray[Any], source: Any) -> None:
-            run.write(0, number, values, source)
-
-        outputs = read_outputs(run.outputs(0), write, inputs, runner)
-        found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run),
-                 "turned": run.turned_triangles(0)}
-        reporter.finish_part()  # last, because the callable may use the run
-    warn(found["warnings"])
-    return outputs, found
+    given = Input(surface, data, data_on_faces=on_faces, mask=left_out(mask, roi, surface))
+    outputs, found = run_once("derivatives", given, properties, {**ARRAYS, "InputArray": name}, progress)
+    result = make_result(DerivativesResult, outputs, {"speed": None, **found}, surface)
+    return result if whole else result.values
 
 
 @_with_settings
@@ -1154,10 +1007,9 @@ def direction_field(
     ((1280, 3), True)
     """
     surface = as_surface(surface)
-    runner = Runner("direction_field", properties, {"DirectionArray": "hints"})
     method = properties.get("method", settings_of("direction_field")["method"].default)
     if hints is not None and method != "Hints":
         raise ValueError(f'hints is given but method is {method}; allowed: method="Hints", or no hints')
-    inputs = Input(surface, directions=hints, directions_name="hints")
-    ((output,), _) = _run_once("direction_field", inputs, runner, progress)
+    given = Input(surface, directions=hints, directions_name="hints")
+    ((output,), _) = run_once("direction_field", given, properties, {"DirectionArray": "hints"}, progress)
     return place(output.values, on_faces=True)

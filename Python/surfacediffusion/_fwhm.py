@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._functions import heat
 from ._run import find_result_type, warn
-from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_data, as_flags, as_outside, as_surface, data_components
+from ._settings import as_number, as_switch
+from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, data_components, left_out
 
 #: exp(-d^2 / (4 sigma^2)) = exp(-d^2 * _RATE / FWHM^2), since FWHM^2 = 8 ln 2 sigma^2.
 _RATE = 2.0 * np.log(2.0)
@@ -118,9 +118,8 @@ def _estimate(
     """The estimate, and for each column the largest width that it may have; 0 if it is constant."""
     surface = as_surface(surface)
     maps = as_data("residuals", residuals, surface.n_points)
-    masked = as_flags("mask", _as_mask(mask, roi, surface), surface.n_points)
-    if not isinstance(demean, (bool, np.bool_)):
-        raise ValueError(f"demean is {shorten(demean)}; allowed: True or False")
+    masked = as_flags("mask", left_out(mask, roi, surface, faces=False), surface.n_points)
+    demean = as_switch("demean", demean)
     edges = _Edges(surface)
     products = np.zeros(maps.shape[1])  # of neighbours, per variance
     variances = np.zeros((maps.shape[1], len(edges.squares)))  # shares of the bins of edges
@@ -159,15 +158,6 @@ def _estimate(
     pooled = _solve(products[varying].mean(), variances[varying].mean(axis=0), edges.squares,
                     areas[varying].mean())
     return FWHMEstimate(pooled, columns), widest
-
-
-def _as_mask(mask: Any, roi: Any, surface: Surface) -> Any:
-    """The mask of points, or that of the region of interest."""
-    if roi is None:
-        return mask
-    if mask is not None:
-        raise ValueError("mask and roi are both given; allowed: one of them")
-    return as_outside(roi, surface.n_points)
 
 
 class _Edges:
@@ -314,13 +304,10 @@ def smooth_to_fwhm(
     True
     """
     surface = as_surface(surface)
-    for name, number, low, high in (("fwhm", fwhm, 0.0, np.inf), ("tolerance", tolerance, 1e-4, 0.1)):
-        real = isinstance(number, (int, float, np.number)) and not isinstance(number, bool)
-        if not (real and low <= number <= high and 0.0 < number < np.inf):
-            allowed = "finite numbers above 0" if name == "fwhm" else "0.0001 to 0.1"
-            raise ValueError(f"{name} is {shorten(number)}; allowed: {allowed}")
+    as_number("fwhm", fwhm)
+    as_number("tolerance", tolerance, "0.0001 to 0.1", lambda number: 1e-4 <= number <= 0.1)
     data = as_data("values", values, surface.n_points)
-    mask = _as_mask(mask, roi, surface)
+    mask = left_out(mask, roi, surface, faces=False)
     find_result_type(data, dtype)
     if residuals is None:
         noise = np.asarray(data, dtype=np.float64)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ._functions import heat
 from ._fwhm import FWHMEstimate, estimate_fwhm
-from ._settings import check_positive, shorten
+from ._settings import as_number, shorten
 from ._surface import Surface, as_surface
 
 
@@ -118,7 +118,7 @@ def _parts(
 
 def _smooth(img: Any, fwhm: float, mask_img: Any, steps: int, progress: Any,
             surfaces: dict[int, Surface]) -> Any:
-    check_positive("fwhm", fwhm)
+    as_number("fwhm", fwhm)
     meshes, data, roi = _parts(img, mask_img)
     results = {}
     for name, mesh in meshes.items():

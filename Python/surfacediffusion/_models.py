@@ -5,16 +5,15 @@ the outputs of a run on one of its surfaces."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._result import RegionBoundary
-from ._run import Input, Runner, find_result_type
+from ._run import Given, find_result_type
 from ._settings import shorten, snake_case
-from ._surface import Surface, as_data, as_factors, as_numbers, data_components
+from ._surface import Surface, as_data, as_factors, as_numbers, find_on_faces, left_out
 
 #: The keywords of input arrays, by their names in messages.
 ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "directions",
@@ -22,59 +21,64 @@ ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "direct
           "SeedArray": "seeds", "DataTermArray": "terms"}
 
 
-@dataclass(frozen=True)
 class Output:
-    """What a model returns, under the name that it has in VTK and ParaView: see Run/Output.h.
+    """What a model returns, an entry of the list of a run: see Run/Output.h.
 
-    values: an array with a row per point, face, entry of a column, or curve and its points; a number
-    or a matrix of numbers; or a list of curves."""
+    place: "points", "faces", "curve points", "curves", "column" or "number". role: "scalars", "vectors",
+    "coordinates" or "". is_result, is_beside_result: named after the data. rows: an array with a row per
+    point, face, entry of a column, point of a curve, or of a matrix."""
 
-    name: str
-    place: str  #: "points", "faces", "curve points", "curves", "column" or "number"
-    role: str  #: "scalars", "vectors", "coordinates" or ""
-    is_result: bool  #: named after the data
-    values: Any
-    is_beside_result: bool = False  #: named after the data, too
+    def __init__(self, entry: dict[str, Any], rows: NDArray[Any]) -> None:
+        self.entry, self.rows = entry, rows
+        self.name, self.place, self.role, self.kind = (
+            str(entry[key]) for key in ("name", "place", "role", "kind"))
+        self.is_result, self.is_beside_result = entry["is_result"], entry["is_beside_result"]
+
+    @property
+    def values(self) -> Any:
+        """The rows as Python has them: a list of curves, a number, or an array with one dimension of one
+        column, unless it has the type of the data."""
+        if "corners" in self.entry:
+            corners = np.array(self.entry["corners"], dtype=np.int64)
+            return np.split(self.rows[corners], self.entry["begin"][1:])[:-1]
+        if self.place == "number":
+            return self.rows[0, 0].item() if self.rows.shape == (1, 1) else self.rows
+        if self.kind == "data" or self.rows.shape[1] != 1:
+            return self.rows
+        return self.rows[:, 0].astype(np.int64) if self.place == "column" and self.kind == "integer" else (
+            self.rows[:, 0])
 
 
 def read_outputs(
-    entries: list[dict[str, Any]], write: Callable[..., None], given: Input, runner: Runner,
-    dtype: Any = None,
+    entries: list[dict[str, Any]], write: Callable[[int, Any, Any], None], given: Given, dtype: Any = None
 ) -> list[Output]:
     """The outputs of one surface. entries: the list of a run; write: its function of the number of an
-    entry, an array and the input."""
+    entry, an array and the input. dtype: of the result of the data, that of the data by default."""
     result_type = find_result_type(given.data, dtype)
     real = np.float32 if result_type == np.float32 else np.float64
     types = {"data": result_type, "real": real, "double": np.float64, "integer": np.int32,
              "byte": np.uint8}
-    sizes = {"points": given.surface.n_points, "faces": given.surface.n_faces}
     outputs = []
     for number, entry in enumerate(entries):
-        place, kind, columns = entry["place"], entry["kind"], entry["columns"]
-        if kind == "data" and given.data is not None:
+        columns = entry["columns"]
+        if entry["kind"] == "data" and given.data is not None:
             columns = given.data.shape[1]  # with alpha
-        values: Any = np.empty((sizes.get(place, entry["rows"]), columns), dtype=types[kind])
-        runner.call(write, number, values, given.core)
-        if "corners" in entry:
-            corners = np.array(entry["corners"], dtype=np.int64)
-            values = np.split(values[corners], entry["begin"][1:])[:-1]
-        elif place == "number" and values.shape == (1, 1):
-            values = values[0, 0].item()
-        elif kind != "data" and columns == 1 and place != "number":
-            values = values[:, 0].astype(np.int64) if place == "column" and kind == "integer" else (
-                values[:, 0])
-        outputs.append(Output(entry["name"], place, entry["role"], entry["is_result"], values,
-                              entry["is_beside_result"]))
+        rows = np.empty((given.sizes.get(entry["place"], entry["rows"]), columns), dtype=types[entry["kind"]])
+        write(number, rows, given.core)
+        outputs.append(Output(entry, rows))
     return outputs
 
 
-def find_outputs(run: Any, block: int, given: Input, runner: Runner, dtype: Any = None) -> list[Output]:
-    """The outputs of one of the surfaces of a run."""
+def find_outputs(
+    run: Any, block: int, given: Given, dtype: Any = None, call: Callable[..., Any] | None = None
+) -> list[Output]:
+    """The outputs of one of the surfaces of a run. call: calls the function that it is given, for its errors."""
 
     def write(number: int, values: NDArray[Any], source: Any) -> None:
-        run.write(block, number, values, source, -1, given.integers)
+        arguments = block, number, values, source, -1, given.integers
+        run.write(*arguments) if call is None else call(run.write, *arguments)
 
-    return read_outputs(run.outputs(block), write, given, runner, dtype)
+    return read_outputs(run.outputs(block), write, given, dtype)
 
 
 #: The attributes of results that have other names than their outputs in snake_case.
@@ -86,9 +90,14 @@ _ATTRIBUTES = {
 }
 
 
-def make_result(result_class: Any, outputs: list[Output], found: Mapping[str, Any]) -> Any:
+def make_result(
+    result_class: Any, outputs: list[Output], found: Mapping[str, Any], surface: Surface
+) -> Any:
     """A result whose attributes are outputs, and those that were found otherwise."""
-    attributes = dict(found)
+    fields = result_class.__dataclass_fields__
+    attributes = {"surface": surface, **found}
+    if "points" in fields:  # which outputs have if they have moved
+        attributes["points"] = np.array(surface.points)
     on_curves = {output.name: output.values for output in outputs if "curve" in output.place}
     for output in outputs:
         if output.name not in on_curves or output.place in ("points", "faces"):
@@ -103,35 +112,38 @@ def make_result(result_class: Any, outputs: list[Output], found: Mapping[str, An
     attributes["boundaries"] = [
         RegionBoundary((int(pair[0]), int(pair[1])), points, float(length)) for points, pair, length
         in zip(*(on_curves.get(name, []) for name in ("Boundaries", "Regions", "Length")))]
-    fields = result_class.__dataclass_fields__
     return result_class(**{name: value for name, value in attributes.items() if name in fields})
 
 
-def as_vectors(surface: Surface, vectors: Any, properties: Mapping[str, Any],
-               on_faces: bool = False) -> NDArray[Any]:
-    """The vectors of harmonic_map: the given ones, or the normals."""
-    n = surface.n_faces if on_faces else surface.n_points
-    if vectors is None:
-        return surface._point_normals()
-    found = as_numbers("vectors", vectors)
-    columns = data_components(found) if found.ndim == 2 else 0
-    if found.ndim != 2 or found.shape[0] != n or columns < 2:
-        raise ValueError(f"vectors has shape {found.shape}; allowed: ({n}, k), one row per "
-                         f"{'face' if on_faces else 'point'} and k > 1, alpha of colours not counted")
-    if properties.get("move_vertices", False) is True and found.shape[1] != 3:
-        raise ValueError(f"vectors has shape {found.shape}; allowed with move_vertices: ({n}, 3)")
-    return as_data("vectors", vectors, n)
+def take_data(
+    function: str, surface: Surface, values: Any, on_faces: Any = None, name: str = "values"
+) -> tuple[Any, bool, bool]:
+    """The data of a function, whether they are on faces, and whether they were integers, for which there may
+    be floating-point numbers. name: in messages."""
+    n = surface.n_points
+    if function == "harmonic_map" and values is None:
+        return surface._point_normals(), False, False
+    if function == "turing_texture":
+        name, on_faces = "initial", False
+        if values is None:
+            return None, False, False
+        if np.shape(as_numbers(name, values)) != (n, 2):
+            raise ValueError(f"initial has shape {np.shape(values)}; allowed: ({n}, 2), one row per point")
+    name = "vectors" if function == "harmonic_map" else name
+    on_faces = find_on_faces(name, values, surface, on_faces)
+    data = as_data(name, values, *((surface.n_faces, "face") if on_faces else (n, "point")))
+    return data, on_faces, function != "turing_texture" and np.asarray(values).dtype.kind in "biu"
 
 
-def as_initial(surface: Surface, initial: Any) -> NDArray[Any] | None:
-    """The initial state of turing_texture; None stays."""
-    if initial is None:
-        return None
-    found = as_numbers("initial", initial)
-    if found.shape != (surface.n_points, 2):
-        raise ValueError(f"initial has shape {found.shape}; allowed: ({surface.n_points}, 2), one row "
-                         "per point")
-    return as_data("initial", initial, surface.n_points)
+def as_mask(mask: Any, roi: Any, surface: Surface, properties: dict[str, Any]) -> Any:
+    """The mask, or that of the region of interest, which sets mask_mode."""
+    found = left_out(mask, roi, surface)
+    if roi is None:
+        return found
+    mode = properties.setdefault("mask_mode", "Exclude")
+    if mode not in ("Exclude", "exclude"):
+        raise ValueError(f"mask_mode is {shorten(mode)} with roi; allowed with roi: Exclude")
+    return found if found.any() else None
 
 
 def as_samples(
@@ -151,13 +163,3 @@ def as_samples(
         raise ValueError(f"fidelity has shape {weights.shape}; allowed: ({p},), one number per point "
                          "of points")
     return places, found.reshape(p, -1 if found.size else 1), weights
-
-
-def check_colors(properties: Mapping[str, Any]) -> None:
-    """low_color and high_color have to be colours."""
-    for name in ("low_color", "high_color"):
-        if name in properties:
-            parts = as_numbers(name, properties[name])
-            if parts.shape != (3,) or not ((parts >= 0.0) & (parts <= 1.0)).all():
-                raise ValueError(f"{name} is {shorten(properties[name])}; allowed: three numbers from "
-                                 "0 to 1")

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._functions import SHARED, left_out
-from ._run import Progress, ProgressReporter, warn_of_seams
-from ._settings import shorten
-from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask
+from ._functions import SHARED
+from ._run import Progress, ProgressReporter, check_parts, warn_of_seams
+from ._settings import as_integer, as_switch
+from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask, left_out
 
 __all__ = ["Eigenmodes", "eigenmodes", "gradient_matrix", "mass_matrix", "stiffness_matrix"]
 
@@ -132,7 +132,7 @@ def stiffness_matrix(
     surface = as_surface(surface)
     tensors = _as_tensors(surface, diffusivity)
     operators = _make_operators(surface, mask, roi, _as_delaunay(surface, intrinsic_delaunay, tensors))
-    warn_of_seams(operators, "nothing flows between them")
+    warn_of_seams(operators)
     return sparse.csr_array(operators.stiffness(tensors), shape=(surface.n_points,) * 2)
 
 
@@ -231,15 +231,10 @@ def eigenmodes(
     tensors = _as_tensors(surface, diffusivity)
     operators = _make_operators(surface, mask, roi, _as_delaunay(surface, intrinsic_delaunay, tensors),
                                 join_short_edges=True)
-    warn_of_seams(operators, "nothing flows between them")
-    most = operators.number_of_vertices()
-    if most == 0:
-        raise ValueError("no triangle of the surface is left; allowed: one or more that are not "
-                         "masked and have an area")
-    if isinstance(n, bool) or not isinstance(n, (int, np.integer)) or not 1 <= n <= most:
-        raise ValueError(f"n is {shorten(n)}; allowed: 1 to {most}, the points with a triangle")
+    most = check_parts(operators)
+    n = as_integer("n", n, 1, most, f"1 to {most}, the points with a triangle")
     with ProgressReporter(progress) as reporter:
-        found = operators.modes(tensors, int(n), reporter.callable)
+        found = operators.modes(tensors, n, reporter.callable)
         reporter.finish_part()
     return Eigenmodes(*found)
 
@@ -262,10 +257,7 @@ def _make_operators(surface: Surface, mask: Any, roi: Any, intrinsic_delaunay: b
 
 
 def _as_delaunay(surface: Surface, intrinsic_delaunay: Any, tensors: Any) -> bool:
-    if not isinstance(intrinsic_delaunay, (bool, np.bool_)):
-        raise ValueError(f"intrinsic_delaunay is {shorten(intrinsic_delaunay)}; allowed: True or "
-                         "False")
-    if intrinsic_delaunay and tensors is not None:
+    if as_switch("intrinsic_delaunay", intrinsic_delaunay) and tensors is not None:
         raise ValueError("intrinsic_delaunay is True, and diffusivity is given for the faces, "
                          "which are not its triangles; allowed: one of them")
     if intrinsic_delaunay and surface.areas is not None:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._run import Progress, ProgressReporter, warn
-from ._settings import shorten
+from ._settings import as_integer, as_number, shorten
 from ._surface import Surface, SurfaceLike, as_numbers, as_outside, as_surface, known_place, place
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -142,7 +142,7 @@ def refine(
     >>> bool((fine.at_points(square.points) == fine.surface.points).all())
     True
     """
-    surface, length = as_surface(surface), as_length("length", length)
+    surface, length = as_surface(surface), as_number("length", length)
     if surface.areas is not None:
         raise ValueError(f"length is {length:g}, but areas are given for the points; allowed: surfaces "
                          "without given areas")
@@ -151,10 +151,7 @@ def refine(
 
 def _refine(surface: Surface, length: float, limit: Any, progress: Progress = False) -> RefinedSurface:
     """The same; a surface keeps its last one."""
-    whole = isinstance(limit, (int, np.integer)) and not isinstance(limit, bool)
-    if not (whole and 1 <= limit < 2**31):
-        raise ValueError(f"maximum_number_of_triangles is {shorten(limit)}; allowed: 1 to {2**31 - 1}")
-    key = (length, int(limit))
+    key = (length, as_integer("maximum_number_of_triangles", limit, 1, 2**31 - 1))
     with surface._lock, ProgressReporter(progress) as reporter:
         if key not in surface._refined:
             found = _core.refine(surface._core, *key, reporter.callable)
@@ -184,7 +181,8 @@ def refine_as_asked(
     """The surfaces with the keywords of a function; None if they stay as they are."""
     automatic = function == "turing_texture" and isinstance(refine_to, (int, float)) and refine_to == -1
     if not automatic:
-        length = as_length("refine_to", refine_to, zero=True)
+        length = as_number("refine_to", refine_to, "finite numbers of at least 0",
+                           lambda number: 0.0 <= number < math.inf)
     elif isinstance(feature_size, (int, float, np.number)) and feature_size > 0:
         mean = mean_edge_length([surface._core for surface in surfaces])
         length = _core.edge_length_for_features(feature_size, mean)
@@ -297,11 +295,3 @@ def take_along(
         if name in _DATA and "on_faces" in given:
             carried["on_faces"] = on_faces
     return fine.surface, carried, fine
-
-
-def as_length(name: str, value: Any, zero: bool = False) -> float:
-    real = isinstance(value, (int, float, np.number)) and not isinstance(value, (bool, np.bool_))
-    if not (real and math.isfinite(value) and (value > 0 or (zero and value == 0))):
-        raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers "
-                         + ("of at least 0" if zero else "above 0"))
-    return float(value)

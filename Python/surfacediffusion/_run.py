@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import sys
 import warnings
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Generic, Iterator, Mapping, TypeVar, Union
 
@@ -13,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._settings import convert_all, settings_of, shorten, spell
+from ._settings import as_switch, convert_all, settings_of, shorten, spell
 from ._surface import (
-    Surface, as_directions, as_factors, as_flags, as_rows, data_components, find_place,
+    Surface, as_directions, as_factors, as_flags, as_numbers, data_components, find_place,
 )
 
 if TYPE_CHECKING:
@@ -39,16 +40,26 @@ def warn(sentences: list[str], category: type[Warning] = SurfaceDiffusionWarning
     warnings.warn("; ".join(sentences), category, stacklevel=level)
 
 
-def warn_of_seams(built: Any, consequence: str) -> None:
-    """A warning if points of the boundary coincide: a surface whose triangles do not share them."""
+def check_parts(built: Any) -> int:
+    """The number of vertices. ValueError if there are none, and a warning if points of the boundary coincide:
+    a surface whose triangles do not share them."""
+    if built.number_of_vertices() == 0:
+        raise ValueError("no triangle of the surface is left; allowed: one or more that are not masked "
+                         "and have an area")
+    warn_of_seams(built)
+    return int(built.number_of_vertices())
+
+
+def warn_of_seams(built: Any) -> None:
+    """A warning if points of the boundary coincide."""
     count, distance = built.seams()
     if distance:
         how = f"points within {distance:g} of one another once, as scipy.spatial.cKDTree finds them"
     else:
         how = "points at one place once, as numpy.unique(points, axis=0, return_inverse=True) does"
     if count:
-        warn([f"{count} boundary points coincide with others and {consequence} (to join them, number "
-              f"{how})"])
+        warn([f"{count} boundary points coincide with others and nothing flows between them (to join them, "
+              f"number {how})"])
 
 
 def take_old_switch(
@@ -57,11 +68,9 @@ def take_old_switch(
     """The value of a switch of former versions, which leaves the properties with a warning."""
     if word not in properties:
         return default
-    given = properties.pop(word)
-    if not isinstance(given, (bool, np.bool_)):
-        raise ValueError(f"{word} is {shorten(given)}; allowed: True or False")
+    given = as_switch(word, properties.pop(word))
     warn([f"{word} of {function}() is deprecated: {instead}"], DeprecationWarning)
-    return bool(given)
+    return given
 
 
 class ProgressReporter:
@@ -135,11 +144,33 @@ def find_result_type(data: NDArray[Any] | None, dtype: Any) -> np.dtype[Any]:
     return found
 
 
-class Input:
+@dataclass
+class Given:
+    """What a run takes of a surface. data: as rows; integers: they were, so that results keep them where
+    nothing determines a value, in place of NaN. sizes: the numbers of "points" and "faces"."""
+
+    core: Any
+    data: NDArray[Any] | None
+    integers: bool
+    sizes: dict[str, int]
+
+
+def make_core(
+    surface: Any, arrays: Mapping[str, tuple[Any, bool]], data_are_terms: bool = False
+) -> Any:
+    """The arrays of a surface of the library as it takes them. arrays: by name, None or an array, and whether
+    it is on faces."""
+    data, *others = [arrays.get(name, (None, False))[0] for name in (
+        "data", "mask", "fixed", "directions", "rates", "fidelity", "seeds")]
+    on_faces = [name for name, (array, at_faces) in arrays.items() if array is not None and at_faces]
+    arguments: list[Any] = [surface, data, 0 if data is None else data_components(data), *others, data_are_terms]
+    return _core.Fields(*arguments, on_faces)
+
+
+class Input(Given):
     """The input of a run on one surface. data_on_faces: where the data are. Directions, masks and the
     like are on points or faces by their number, unless they are Placed. samples: places, values and
-    weights in place of data. integers: the data were, so that results keep them where nothing determines
-    a value, in place of NaN. refined: the refinement that has made the surface, between whose given
+    weights in place of data. refined: the refinement that has made the surface, between whose given
     points nothing was measured."""
 
     def __init__(
@@ -161,23 +192,22 @@ class Input:
         refined: RefinedSurface | None = None,
     ) -> None:
         n, m = surface.n_points, surface.n_faces
-        self.surface, self.data, self.integers = surface, data, integers
-        directed_faces = False
+        self.surface = surface
+        arrays: dict[str, tuple[Any, bool]] = {"data": (data, data_on_faces)}
         if directions is not None:
-            directions, directed_faces = as_directions(directions_name, directions, (n, m))
+            arrays["directions"] = as_directions(directions_name, directions, (n, m))
         if rates is not None:
-            rates = as_rows("rates", rates, m, 4, "face")
-        self.data_on_faces = data_on_faces
-        marks = {"mask": as_flags("mask", mask), "fixed": as_flags("fixed", fixed),
-                 "fidelity": as_factors("fidelity", fidelity), "seeds": as_factors("seeds", seeds)}
-        places = ["data"] * data_on_faces + ["directions"] * directed_faces + [
-            name for name, array, what in (("mask", mask, "flag"), ("fixed", fixed, "flag"),
-                                           ("fidelity", fidelity, "number"), ("seeds", seeds, "label"))
-            if array is not None and find_place(name, array, (n, m), what, data_on_faces)]
-        self.core = _core.Fields(
-            surface._core, data, 0 if data is None else data_components(data), marks["mask"],
-            marks["fixed"], directions, rates, marks["fidelity"], marks["seeds"], data_are_terms,
-            places)
+            found = as_numbers("rates", rates)
+            if found.shape != (m, 4):
+                raise ValueError(f"rates has shape {found.shape}; allowed: ({m}, 4), one row per face")
+            arrays["rates"] = np.ascontiguousarray(found, dtype=np.float64), False
+        for name, array, convert, what in (
+                ("mask", mask, as_flags, "flag"), ("fixed", fixed, as_flags, "flag"),
+                ("fidelity", fidelity, as_factors, "number"), ("seeds", seeds, as_factors, "label")):
+            if array is not None:
+                arrays[name] = convert(name, array), find_place(name, array, (n, m), what, data_on_faces)
+        super().__init__(make_core(surface._core, arrays, data_are_terms), data, integers,
+                         {"points": n, "faces": m})
         if samples is not None:
             self.core.set_samples(*samples)
         if refined is not None:

@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from ._fields import (
     check_finite, find_bands, leave_out_missing, make_fields, warn_of_edges, warn_of_solves,
 )
-from ._functions import left_out
 from ._run import Progress, ProgressReporter
-from ._settings import check_positive, shorten
-from ._surface import Surface, SurfaceLike, as_data, as_numbers, as_surface
+from ._settings import as_integer, as_number, shorten
+from ._surface import Surface, SurfaceLike, as_data, as_numbers, as_surface, left_out
 
 __all__ = ["Spectrum", "scale_filter", "spectrum"]
 
@@ -96,12 +95,12 @@ def scale_filter(
         row = int(np.argmax(bad))
         at = "" if np.ndim(wavelength) == 0 else f" in row {row}"
         raise ValueError(f"wavelength is {lengths[row]}{at}; allowed: finite numbers above 0")
-    _check_order(order)
+    order = as_integer("order", order, 1, 2, "1 and 2")
     warn_of_edges("wavelength", float(lengths[known].min()), fields)
     lengths[~known] = 1.0
     result[~known] = 0.0
     with surface._lock, ProgressReporter(progress) as reporter:
-        warn_of_solves(fields.filter_scales(result, lengths, int(order), reporter.callable))
+        warn_of_solves(fields.filter_scales(result, lengths, order, reporter.callable))
         reporter.finish_part()
     return result.reshape(np.shape(values))
 
@@ -163,12 +162,12 @@ def spectrum(
     if lengths.ndim != 1 or lengths.size == 0 or not (np.diff(lengths) > 0.0).all():
         raise ValueError(f"wavelengths is {shorten(wavelengths)}; allowed: one or more ascending numbers")
     for length in lengths:
-        check_positive("wavelengths", float(length))
-    _check_order(order)
+        as_number("wavelengths", float(length))
+    order = as_integer("order", order, 1, 2, "1 and 2")
     fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), data))
     warn_of_edges("wavelengths", float(lengths[0]), fields)
     with surface._lock, ProgressReporter(progress) as reporter:
-        bands = find_bands(fields, fields.areas(), data, lengths.tolist(), int(order), reporter.callable)
+        bands = find_bands(fields, fields.areas(), data, lengths.tolist(), order, reporter.callable)
         reporter.finish_part()
     return Spectrum(lengths, bands if np.ndim(values) == 2 else bands[:, 0])
 
@@ -178,8 +177,3 @@ def _as_data(values: Any, surface: Surface) -> tuple[NDArray[np.float64], NDArra
     data = np.asarray(as_data("values", values, surface.n_points), dtype=np.float64)
     check_finite("values", data)
     return data, np.array(data)
-
-
-def _check_order(order: Any) -> None:
-    if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or order not in (1, 2):
-        raise ValueError(f"order is {shorten(order)}; allowed: 1 and 2")

@@ -12,7 +12,7 @@ import numbers
 import operator
 import re
 from dataclasses import dataclass
-from typing import Any, Mapping, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -75,11 +75,30 @@ def shorten(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def check_positive(name: str, value: Any) -> None:
-    """ValueError unless the value is a finite number above 0."""
+def as_number(
+    name: str, value: Any, allowed: str = "finite numbers above 0",
+    fits: Callable[[float], bool] = lambda number: 0.0 < number < math.inf,
+) -> float:
+    """The value as a float. ValueError if it is none, or does not fit."""
     is_number = isinstance(value, (int, float, np.number)) and not isinstance(value, (bool, np.bool_))
-    if not (is_number and 0.0 < value < math.inf):
-        raise ValueError(f"{name} is {shorten(value)}; allowed: finite numbers above 0")
+    if not (is_number and fits(value)):
+        raise ValueError(f"{name} is {shorten(value)}; allowed: {allowed}")
+    return float(value)
+
+
+def as_integer(name: str, value: Any, low: int, high: int, allowed: str = "") -> int:
+    """The value as an int. ValueError unless it is from low to high."""
+    is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.bool_))
+    if not (is_integer and low <= value <= high):
+        raise ValueError(f"{name} is {shorten(value)}; allowed: {allowed or f'{low} to {high}'}")
+    return int(value)
+
+
+def as_switch(name: str, value: Any) -> bool:
+    """The value as a bool. ValueError if it is none."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name} is {shorten(value)}; allowed: True or False")
+    return bool(value)
 
 
 def snake_case(name: str) -> str:

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._functions import _run_once, _with_settings
+from ._functions import _with_settings, run_once
 from ._models import ARRAYS
-from ._run import Input, Progress, Runner
+from ._run import Input, Progress
 from ._settings import snake_case
 from ._surface import Surface, SurfaceLike, as_data, as_surface
 
@@ -116,9 +116,8 @@ def relief(
     surface = as_surface(surface)
     if properties.get("overhang", 0) is None:
         del properties["overhang"]
-    inputs = Input(surface, as_data("values", values, surface.n_points), mask=mask)
-    runner = Runner("relief", {"height": height, **properties}, ARRAYS)
-    outputs, found = _run_once("relief", inputs, runner, progress)
+    given = Input(surface, as_data("values", values, surface.n_points), mask=mask)
+    outputs, found = run_once("relief", given, {"height": height, **properties}, ARRAYS, progress)
     triangles = np.array(surface.triangles)
     triangles[found["turned"]] = triangles[found["turned"]][:, [0, 2, 1]]
     of_name = {output.name: output.values for output in outputs}

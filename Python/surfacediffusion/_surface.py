@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._settings import check_positive, shorten
+from ._settings import as_integer, as_number, as_switch, shorten
 
 _NUMBERS = "biuf"  #: kinds of numpy types: bool, integer, unsigned integer, float
 
@@ -29,15 +29,6 @@ def as_numbers(name: str, values: Any) -> NDArray[Any]:
     if array.dtype.kind not in _NUMBERS:
         raise ValueError(f"{name} has elements of type {array.dtype}; allowed: real numbers")
     return array
-
-
-def as_rows(name: str, values: Any, rows: int, columns: int, row_name: str) -> NDArray[np.float64]:
-    """A float64 array of the given shape."""
-    array = as_numbers(name, values)
-    if array.shape != (rows, columns):
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({rows}, {columns}), "
-                         f"one row per {row_name}")
-    return np.ascontiguousarray(array, dtype=np.float64)
 
 
 class Placed(np.ndarray):  # type: ignore[type-arg,unused-ignore]  # numpy 1.21 takes no arguments
@@ -141,6 +132,16 @@ def as_outside(roi: Any, *sizes: int) -> NDArray[np.bool_]:
     return outside if known is None else place(outside, known)
 
 
+def left_out(mask: Any, roi: Any, surface: Surface, faces: bool = True) -> Any:
+    """The mask, or that of the outside of the region of interest in place of one. faces: whether it may be
+    on faces."""
+    if roi is None:
+        return mask
+    if mask is not None:
+        raise ValueError("mask and roi are both given; allowed: one of them")
+    return as_outside(roi, surface.n_points, *[surface.n_faces] * faces)
+
+
 def as_factors(name: str, values: Any) -> NDArray[np.float64] | None:
     """Numbers; None stays."""
     if values is None:
@@ -160,18 +161,11 @@ def as_data(name: str, values: Any, points: int, row_name: str = "point") -> NDA
     return np.ascontiguousarray(array.reshape(points, -1), dtype=dtype)
 
 
-def has_integers(values: Any) -> bool:
-    """Whether data are integers, for which as_data() may give floating-point numbers."""
-    return np.asarray(values).dtype.kind in "biu"
-
-
 def find_on_faces(name: str, values: Any, surface: Surface, on_faces: bool | None) -> bool:
     """Whether data are on faces: as `on_faces` says, or if their number is that of the faces and not
     that of the points."""
-    if on_faces is not None and not isinstance(on_faces, (bool, np.bool_)):
-        raise ValueError(f"on_faces is {shorten(on_faces)}; allowed: True, False or None")
     if on_faces is not None:
-        return bool(on_faces)
+        return as_switch("on_faces", on_faces)
     array, n, m = as_numbers(name, values), surface.n_points, surface.n_faces
     if array.ndim not in (1, 2) or array.shape[0] not in (n, m) or array.size == 0:
         raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},) or ({n}, k), one row per "
@@ -387,12 +381,8 @@ class Surface:
     def normals(self) -> NDArray[np.float64]:
         """The normalised sums (n, 3) of the unit normals of the faces at each point; zero at points
         without face. Outward if faces are counter-clockwise as seen from outside."""
-        sums = np.zeros((self.n_points, 3))
-        normals = self._face_normals()
-        for axis in range(3):
-            weights = np.repeat(normals[:, axis], np.diff(self._offsets))
-            sums[:, axis] = np.bincount(self._connectivity, weights, minlength=self.n_points)
-        return normalize(sums)
+        normals = np.repeat(self._face_normals(), np.diff(self._offsets), axis=0)
+        return sum_vectors(self._connectivity, normals, self.n_points)
 
     def __repr__(self) -> str:
         return f"<Surface: {self.n_points} points, {self.n_faces} faces>"
@@ -434,6 +424,13 @@ def normalize(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
                       + vectors[:, 2] * vectors[:, 2])
     vectors[lengths > 0] /= lengths[lengths > 0, None]
     return vectors
+
+
+def sum_vectors(
+    rows: NDArray[Any], vectors: NDArray[np.float64], count: int
+) -> NDArray[np.float64]:
+    """The normalised sums of vectors at each of `count` rows."""
+    return normalize(np.stack([np.bincount(rows, column, count) for column in vectors.T], axis=1))
 
 
 def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -534,9 +531,8 @@ def sphere(subdivisions: int = 4, radius: float = 1.0) -> Surface:
     >>> sphere(3)
     <Surface: 642 points, 1280 faces>
     """
-    if not (isinstance(subdivisions, (int, np.integer)) and 0 <= subdivisions <= 9):
-        raise ValueError(f"subdivisions is {shorten(subdivisions)}; allowed: 0 to 9")
-    check_positive("radius", radius)
+    as_integer("subdivisions", subdivisions, 0, 9)
+    as_number("radius", radius)
     g = (1.0 + 5.0**0.5) / 2.0
     points = np.array([[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0], [0, -1, g], [0, 1, g],
                        [0, -1, -g], [0, 1, -g], [g, 0, -1], [g, 0, 1], [-g, 0, -1], [-g, 0, 1]])

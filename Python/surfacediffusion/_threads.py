@@ -6,11 +6,9 @@ from __future__ import annotations
 
 import os
 
-import numpy as np
-
 from . import _core
 from ._run import warn
-from ._settings import shorten
+from ._settings import as_integer, shorten
 
 
 #: Variables of the environment with the number of threads at first, in this order.
@@ -38,10 +36,8 @@ def set_number_of_threads(number: int) -> None:
     >>> surfacediffusion.get_number_of_threads()
     2
     """
-    allowed = isinstance(number, (int, np.integer)) and not isinstance(number, bool)
-    if not allowed or not 0 <= number <= 1024:
-        raise ValueError(f"number is {shorten(number)}; allowed: 0 to 1024 threads")
-    _core.set_number_of_threads(int(number) or _number_of_processors())
+    number = as_integer("number", number, 0, 1024, "0 to 1024 threads")
+    _core.set_number_of_threads(number or _number_of_processors())
 
 
 def _number_of_processors() -> int:

@@ -56,34 +56,28 @@ from typing import Any, Callable, Iterable, Iterator, Sequence
 import numpy as np
 import pyvista
 from numpy.typing import NDArray
+from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR
+from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 
 from . import _core, _functions
 from ._distance import nearest_sources as _nearest_sources
 from ._fields import random_field as _random_field
 from ._fields import surrogates as _surrogates
-from ._functions import curvature as _curvature
-from ._functions import denoise_mesh as _denoise_mesh
-from ._functions import direction_field as _direction_field
-from ._functions import (
-    exclude_outside, find_derivatives, interpolate_with_outputs, left_out, segment_with_outputs,
-)
-from ._meshes import find_polydata
-from ._models import (
-    ARRAYS, Output, as_initial, as_vectors, check_colors, find_outputs, make_result,
+from ._models import ARRAYS, Output, as_mask, find_outputs, make_result, take_data
+from ._polydata import (
+    ABSENT, attribute_of, cell_flags, move_points, name_of, read_cells, refined_polydata, turn_polygons,
 )
 from ._refinement import (
     ESTIMATING, RULES, RefinedSurface, interpolate_points, keywords_of, refine_as_asked,
 )
 from ._result import (
-    DiffusionResult, EdgeResult, HarmonicMapResult, Result, SegmentationResult,
-    TensorDiffusionResult, TextureResult,
+    DiffusionResult, EdgeResult, HarmonicMapResult, Result, TensorDiffusionResult, TextureResult,
 )
 from ._run import Input, Progress, Runner, find_result_type, take_old_switch
 from ._scales import scale_filter as _scale_filter
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
-from ._surface import Surface, as_data, as_outside, has_integers, place
-from .paraview._surfaces import ABSENT, cell_flags, cut_strips, polygons_of
+from ._surface import Surface, place
 
 __all__: list[str] = []
 __all__ += [*_functions.__all__, "distance", "random_field", "relief", "scale_filter", "surrogates"]
@@ -165,22 +159,13 @@ def segment(
     cells if the data are on cells. return_result: if True, the function returns a pair: the mesh, and the
     SegmentationResult, of a MultiBlock the list of them.
     """
-    properties, result_name = _keywords("segment", properties)
-    blocks, results = _find_surfaces(mesh, "segment", properties), []
-    for block in blocks:
-        data = (block.find_data(array, faces=True) if terms is None
-                else block.find("terms", terms, faces=True))
-        if data.on_faces and block.has_strips:
-            raise ValueError("the data are a cell array of triangle strips; allowed: polygons, for "
-                             "example mesh.triangulate()")
-        marks = {argument: block.find(argument, given, faces=True) for argument, given in (
-            ("seeds", seeds), ("mask", mask), ("roi", roi), ("fidelity", fidelity))}
-        result, outputs = segment_with_outputs(
-            block.surface, data if terms is None else None, None if terms is None else data, data.on_faces,
-            progress=progress, properties=dict(properties), dtype=None, **marks)
-        results.append(result)
-        _write(block, outputs, result_name)
-    return _built(mesh, blocks, results, return_result)
+
+    def read(block: _Block) -> dict[str, Any]:
+        name, given = ("values", array) if terms is None else ("terms", terms)
+        return {name: block.find_whole(given, "array" if terms is None else "terms"),
+                **block.find_all(seeds=seeds, mask=mask, roi=roi, fidelity=fidelity)}
+
+    return _on_each("segment", mesh, read, return_result, progress, properties)
 
 
 def interpolate(
@@ -200,39 +185,25 @@ def interpolate(
     """
     if points is not None and not hasattr(points, "point_data"):
         raise ValueError(f"points is {shorten(points)}; allowed: a data set with point arrays")
-    properties, result_name = _keywords("interpolate", properties)
-    blocks, results = _find_surfaces(mesh, "interpolate", properties), []
-    for block in blocks:
-        values, weights, places, on_faces = None, None, None, None
+
+    def read(block: _Block) -> dict[str, Any]:
+        found = {"directions": block.find("direction", direction), **block.find_all(mask=mask, roi=roi)}
         if points is None:
-            values = block.find_data(array, faces=True)
-            on_faces = values.on_faces
-            if on_faces and block.has_strips:
-                raise ValueError(f"array is {shorten(block.name)}, a cell array of triangle strips; allowed: "
-                                 "polygons, for example mesh.triangulate()")
-            weights = block.find("fidelity", fidelity, faces=True)
-        else:
-            name = points.point_data.active_scalars_name if array is None else array
-            if name is None:
-                raise ValueError("array is None, and there are no active scalars; allowed: the name of an "
-                                 "array")
-            for argument, given in (("array", name), ("fidelity", fidelity)):
-                if given is not None and not (isinstance(given, str) and given in points.point_data):
-                    raise ValueError(f"{argument} is {shorten(given)}; allowed: point arrays of points, "
-                                     + (", ".join(map(repr, points.point_data.keys()))
-                                        or "of which there are none"))
-            places = np.asarray(points.points)
-            values = np.asarray(points.point_data[name])
-            weights = None if fidelity is None else np.asarray(points.point_data[fidelity])
-            block.name, block.computed = name, True
-        result, outputs = interpolate_with_outputs(
-            block.surface, values, places, on_faces, block.find("mask", mask, faces=True),
-            block.find("roi", roi, faces=True), block.find("direction", direction, faces=True), weights,
-            progress,
-            {**properties, "_refined": block.refined}, None)
-        results.append(result)
-        _write(block, outputs, result_name)
-    return _built(mesh, blocks, results, return_result)
+            return {"values": block.find_whole(array), "_refined": block.refined, **found,
+                    "fidelity": block.find("fidelity", fidelity)}
+        name = points.point_data.active_scalars_name if array is None else array
+        if name is None:
+            raise ValueError("array is None, and there are no active scalars; allowed: the name of an array")
+        for argument, given in (("array", name), ("fidelity", fidelity)):
+            if given is not None and not (isinstance(given, str) and given in points.point_data):
+                raise ValueError(f"{argument} is {shorten(given)}; allowed: point arrays of points, "
+                                 + (", ".join(map(repr, points.point_data.keys()))
+                                    or "of which there are none"))
+        block.name = name
+        return {"values": np.asarray(points.point_data[name]), "points": np.asarray(points.points), **found,
+                "fidelity": None if fidelity is None else np.asarray(points.point_data[fidelity])}
+
+    return _on_each("interpolate", mesh, read, return_result, progress, properties)
 
 
 def denoise_mesh(
@@ -243,25 +214,13 @@ def denoise_mesh(
 
     fixed: point or cell array; points, and the points of cells, with a nonzero value stay. The method
     and all other keywords are described in help(surfacediffusion.denoise_mesh). The result has moved
-    points and the point array Displacement (n, 3); active point normals are computed again, and cell
-    normals and tangents are dropped. Each block of a MultiBlock has its own noise level. return_result:
+    points and the point array Displacement (n, 3); normals are computed again, and tangents are dropped.
+    Each block of a MultiBlock has its own noise level. return_result:
     if True, the function returns a pair: the mesh, and the MeshDenoisingResult, of a MultiBlock the
     list of them.
     """
-    properties, name = _keywords("denoise_mesh", properties)
-    blocks, results = _find_surfaces(mesh, "denoise_mesh", properties), []
-    for block in blocks:
-        marks = block.find("fixed", fixed, faces=True)
-        result = _denoise_mesh(block.surface, fixed=marks, progress=progress, **properties)
-        results.append(result)
-        block.add(name or "Displacement", result.points - block.surface.points, False)
-        block.move(result.points)
-        normals = block.mesh.point_data.active_normals_name
-        if normals is not None and result.maximum_displacement > 0.0:
-            moved = Surface(result.points, block.surface.triangles)
-            block.mesh.point_data[normals] = moved._point_normals()
-            block.mesh.GetPointData().SetActiveNormals(normals)
-    return _built(mesh, blocks, results, return_result)
+    return _on_each("denoise_mesh", mesh, lambda block: block.find_all(fixed=fixed), return_result, progress,
+                    properties)
 
 
 def relief(
@@ -274,25 +233,15 @@ def relief(
     array; points, and the points of cells, with a nonzero value have no relief. The method and all other
     keywords are described in help(surfacediffusion.relief). The result has moved points and the point
     array ReliefHeight (n,), the heights that were used; polygons are oriented outwards.
-    Active point normals are computed again, and cell normals and tangents are dropped. return_result: if
-    True, the function returns a pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
+    Normals are computed again, and tangents are dropped. return_result: if True, the function returns a
+    pair: the mesh, and the ReliefResult, of a MultiBlock the list of them.
     """
-    properties, name = _keywords("relief", properties)
-    blocks, results = _find_surfaces(mesh, "relief", properties), []
-    for block in blocks:
-        values = block.find("array", array)
-        marks = block.find("mask", mask, faces=True)
-        result = _relief(block.surface, values, height, mask=marks, progress=progress, **properties)
-        results.append(result)
-        block.add(name or "ReliefHeight", result.heights, False)
-        block.move(result.surface.points)
-        turned = (result.surface.triangles != block.surface.triangles).any(axis=1)
-        block.turn(block.surface._core.faces()[turned])
-        normals = block.mesh.point_data.active_normals_name
-        if normals is not None:
-            block.mesh.point_data[normals] = result.surface._point_normals()
-            block.mesh.GetPointData().SetActiveNormals(normals)
-    return _built(mesh, blocks, results, return_result)
+
+    def read(block: _Block) -> dict[str, Any]:
+        return {"values": block.find("array", array, faces=False), "height": height,
+                **block.find_all(mask=mask)}
+
+    return _on_each("relief", mesh, read, return_result, progress, properties)
 
 
 def curvature(
@@ -307,20 +256,8 @@ def curvature(
     Curvedness; result_array_name is the prefix of their names. return_result: if True, the function
     returns a pair: the mesh, and the CurvatureResult, of a MultiBlock the list of them.
     """
-    properties, prefix = _keywords("curvature", properties)
-    blocks, results = _find_surfaces(mesh, "curvature", properties), []
-    for block in blocks:
-        marks = block.find_left_out(mask, roi)
-        result = _curvature(block.surface, mask=marks, progress=progress, **properties)
-        results.append(result)
-        for name, values in (
-            ("MeanCurvature", result.mean), ("GaussianCurvature", result.gaussian),
-            ("PrincipalCurvatures", result.principal), ("ShapeIndex", result.shape_index),
-            ("Curvedness", result.curvedness),
-        ):
-            block.add((prefix or "") + name, values, False)
-        block.mesh.set_active_scalars((prefix or "") + "MeanCurvature", "point")
-    return _built(mesh, blocks, results, return_result)
+    return _on_each("curvature", mesh, lambda block: block.find_all(mask=mask, roi=roi), return_result, progress,
+                    properties)
 
 
 def distance(
@@ -345,13 +282,11 @@ def distance(
     blocks = _find_surfaces(mesh, "distance", properties)
     given = getattr(sources, "points", sources)
     for block in blocks:
-        arrays = {"speed": block.find("speed", speed, faces=True),
-                  "directions": block.find("direction", direction, faces=True),
-                  "along_speed": along_speed, "across_speed": across_speed,
-                  "mask": block.find_left_out(mask, roi)}
+        arrays = {"directions": block.find("direction", direction), "along_speed": along_speed,
+                  "across_speed": across_speed, **block.find_all(speed=speed, mask=mask, roi=roi)}
         rows = given
         if isinstance(sources, str):
-            marks = np.asarray(block.find("sources", sources))
+            marks = np.asarray(block.find("sources", sources, faces=False))
             rows = np.flatnonzero(np.nan_to_num(marks))
             if rows.size == 0:
                 raise ValueError(f"sources is {shorten(sources)}, which is 0 at all points; allowed: point "
@@ -371,9 +306,9 @@ def distance(
             block.surface, rows, method=method, progress=progress, **arrays, **properties)
         prefix = result_array_name or ""
         name = prefix + found._name
-        block.add(name, found.distance, False)
-        block.add(prefix + "NearestSource",
-                  np.where(found.source < 0, nowhere, names[found.source]), False)
+        block.mesh.point_data[name] = found.distance
+        block.mesh.point_data[prefix + "NearestSource"] = np.where(
+            found.source < 0, nowhere, names[found.source])
         block.mesh.field_data[prefix + "EffectiveMethod"] = [found.method]
         block.mesh.set_active_scalars(name, "point")
     return _rebuild(mesh, iter(blocks))
@@ -391,14 +326,13 @@ def random_field(
     component per field, which becomes active, and NaN at points that are left out. result_array_name is the
     prefix of its name.
     """
-    blocks = _find_surfaces(mesh, "random_field", {})
-    name = (result_array_name or "") + "RandomField"
-    for block in blocks:
-        found = _random_field(
+
+    def draw(block: _Block) -> tuple[str, NDArray[Any]]:
+        return "RandomField", _random_field(
             block.surface, n, fwhm=fwhm, range=range, nu=nu, seed=seed, normalize=normalize,
-            mask=block.find_left_out(mask, roi), progress=progress, **merging)
-        _add_columns(block, name, found)
-    return _rebuild(mesh, iter(blocks))
+            progress=progress, **block.find_all(mask=mask, roi=roi), **merging)
+
+    return _add_columns(mesh, draw, result_array_name, is_prefix=True)
 
 
 def surrogates(
@@ -412,13 +346,14 @@ def surrogates(
     surfacediffusion.surrogates. The result is a point array with a component per surrogate, which becomes
     active: that of the map's name followed by Surrogates, or result_array_name.
     """
-    blocks = _find_surfaces(mesh, "surrogates", {})
-    for block in blocks:
-        values = block.find_data(array)
-        found = _surrogates(block.surface, values, n, seed=seed, mask=block.find_left_out(mask, roi),
-                            progress=progress)
-        _add_columns(block, result_array_name or block.name + "Surrogates", found.values)
-    return _rebuild(mesh, iter(blocks))
+
+    def draw(block: _Block) -> tuple[str, NDArray[Any]]:
+        values = block.find_data(array, faces=False)
+        found = _surrogates(block.surface, values, n, seed=seed, progress=progress,
+                            **block.find_all(mask=mask, roi=roi))
+        return block.name + "Surrogates", found.values
+
+    return _add_columns(mesh, draw, result_array_name)
 
 
 def scale_filter(
@@ -433,20 +368,29 @@ def scale_filter(
     surfacediffusion.scale_filter. The result has the name of the array followed by Filtered, or
     result_array_name, and becomes active.
     """
-    blocks = _find_surfaces(mesh, "scale_filter", {})
+    def filter_values(block: _Block) -> tuple[str, NDArray[Any]]:
+        values, lengths = block.find_data(array, faces=False), wavelength
+        if isinstance(wavelength, str):
+            lengths = block.find("wavelength", wavelength, faces=False)
+        return block.name + "Filtered", _scale_filter(
+            block.surface, values, lengths, order=order, progress=progress,
+            **block.find_all(mask=mask, roi=roi))
+
+    return _add_columns(mesh, filter_values, result_array_name)
+
+
+def _add_columns(
+    mesh: Any, find: Callable[[_Block], tuple[str, NDArray[Any]]], name: str | None, is_prefix: bool = False
+) -> Any:
+    """Add a point array to each surface, without a second dimension if it has one column, and make it active.
+    find: its usual name and its values. name: in place of that name, or before it."""
+    blocks = _find_surfaces(mesh, "", {})
     for block in blocks:
-        values = block.find_data(array)
-        lengths = block.find("wavelength", wavelength) if isinstance(wavelength, str) else wavelength
-        found = _scale_filter(block.surface, values, lengths, order=order,
-                              mask=block.find_left_out(mask, roi), progress=progress)
-        _add_columns(block, result_array_name or block.name + "Filtered", found)
+        usual, values = find(block)
+        given = (name or "") + usual if is_prefix else name or usual
+        block.mesh.point_data[given] = values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
+        block.mesh.set_active_scalars(given, "point")
     return _rebuild(mesh, iter(blocks))
-
-
-def _add_columns(block: _Block, name: str, values: NDArray[Any]) -> None:
-    """Add a point array, without a second dimension if it has one column, and make it active."""
-    block.add(name, values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values, False)
-    block.mesh.set_active_scalars(name, "point")
 
 
 def derivatives(
@@ -462,27 +406,15 @@ def derivatives(
     tSpeed. return_result: if True, the function returns a pair: the mesh, and the DerivativesResult, of
     a MultiBlock the list of them.
     """
-    properties, given = _keywords("derivatives", properties)
-    quantity = settings_of("derivatives")["quantity"]
-    word = quantity.words[quantity.convert(properties.get("quantity", quantity.default))]
-    blocks, results = _find_surfaces(mesh, "derivatives", properties), []
-    known = [block.has(block.mesh.active_scalars_name if array is None else array) for block in blocks]
-    for block, is_known in zip(blocks, known):
-        if not is_known and any(known):
-            continue
-        values = block.find_data(array, faces=True)
-        result = find_derivatives(block.surface, values, values.on_faces, block.find_left_out(mask, roi),
-                                  None, progress, dict(properties))
-        results.append(result)
-        at_cells = bool(properties.get("result_on_faces", False))
-        name = given or block.name + word
-        block.add(name, result.values, at_cells)
-        if result.speed is not None:
-            block.add((given or block.name) + "Speed", result.speed, at_cells)
-        is_vector = word in ("Gradient", "ConductionVelocity") and result.values.shape[1:] == (3,)
-        activate = block.mesh.set_active_vectors if is_vector else block.mesh.set_active_scalars
-        activate(name, preference="cell" if at_cells else "point")
-    return _built(mesh, blocks, results, return_result)
+    def has(leaf: Any) -> bool:
+        return _has(leaf, leaf.active_scalars_name if array is None else array)
+
+    def read(block: _Block) -> dict[str, Any] | None:
+        if not has(block.origin) and any(map(has, _find_polydata(mesh))):
+            return None
+        return {"values": block.find_data(array), **block.find_all(mask=mask, roi=roi)}
+
+    return _on_each("derivatives", mesh, read, return_result, progress, properties)
 
 
 def direction_field(
@@ -494,22 +426,17 @@ def direction_field(
     are those of surfacediffusion.direction_field. The result is the cell array Direction (m, 3):
     unit vectors whose sign has no meaning, zero in cells that have no direction.
     """
-    properties, name = _keywords("direction_field", properties)
-    surfaces = _find_surfaces(mesh, "direction_field", properties)
-    for block in surfaces:
+
+    def read(block: _Block) -> dict[str, Any]:
         if block.has_strips:
             raise TypeError("the mesh has triangle strips, which have no single direction; allowed: "
                             "polygons, for example mesh.triangulate()")
-        given = block.find("hints", hints, faces=True)
-        field = _direction_field(block.surface, given, progress=progress, **properties)
-        cells = np.zeros((block.mesh.n_cells, 3))
-        cells[block.face_cells] = field
-        block.mesh.cell_data[name or "Direction"] = cells
-        block.mesh.GetCellData().SetActiveVectors(name or "Direction")
-    return _rebuild(mesh, iter(surfaces))
+        return block.find_all(hints=hints)
+
+    return _on_each("direction_field", mesh, read, False, progress, properties)
 
 
-_RESULTS = {"harmonic_map": HarmonicMapResult, "mumford_shah": EdgeResult, "segment": SegmentationResult,
+_RESULTS = {"harmonic_map": HarmonicMapResult, "mumford_shah": EdgeResult,
             "tensor_diffusion": TensorDiffusionResult, "turing_texture": TextureResult}
 
 
@@ -524,13 +451,12 @@ class _Block:
         self.empty = len(faces) == 0
         if not self.empty:
             self.surface = Surface(mesh.points, faces)
-        self.given: Input | None = None
         self.refined: RefinedSurface | None = None  #: that has made the mesh from the input
-        self.name = ""  #: of the data
+        self.name = ""  #: of the data, if they are an array of the mesh or of samples
         self.on_faces = False  #: the data are a cell array
-        self.computed = False  #: the data are computed normals, of no array
+        self.computed = False  #: the data are computed normals
 
-    def find(self, argument: str, name: str | None, points: bool = True, faces: bool = False) -> Any:
+    def find(self, argument: str, name: str | None, points: bool = True, faces: bool = True) -> Any:
         """An array by name, as Placed; None stays."""
         if name is None:
             return None
@@ -549,7 +475,11 @@ class _Block:
         listed = ", ".join(repr(other) for other in names) or "of which there are none"
         raise ValueError(f"{argument} is {shorten(name)}; allowed: {where} arrays, {listed}")
 
-    def find_data(self, name: str | None, faces: bool = False) -> Any:
+    def find_all(self, **names: str | None) -> dict[str, Any]:
+        """Point or cell arrays by the names of arguments."""
+        return {argument: self.find(argument, name) for argument, name in names.items()}
+
+    def find_data(self, name: str | None, faces: bool = True, argument: str = "array") -> Any:
         """The data, as Placed: the array of this name, or the active scalars. Name and place are kept."""
         on_cells = False
         if name is None:
@@ -558,73 +488,61 @@ class _Block:
             if name is None:
                 raise ValueError("array is None and the mesh has no active scalars; allowed: the name of an "
                                  "array")
-        values = self.find("array", name, points=not (faces and on_cells), faces=faces)
+        values = self.find(argument, name, points=not (faces and on_cells), faces=faces)
         self.name, self.on_faces = name, bool(values.on_faces)
         return values
 
-    def has(self, name: Any) -> bool:
-        """Whether there is a point or cell array of this name."""
-        return isinstance(name, str) and (name in self.mesh.point_data or name in self.mesh.cell_data)
+    def find_whole(self, name: str | None, argument: str = "array") -> Any:
+        """Data of which a cell has its own."""
+        values = self.find_data(name, argument=argument)
+        if self.on_faces and self.has_strips:
+            raise ValueError(f"{argument} is {shorten(self.name)}, a cell array of triangle strips; allowed: "
+                             "polygons, for example mesh.triangulate()")
+        return values
 
-    def find_left_out(self, mask: str | None, roi: str | None) -> Any:
-        """The mask, or that of what is outside of the region of interest."""
-        return left_out(self.find("mask", mask, faces=True), self.find("roi", roi, faces=True),
-                        self.surface)
-
-    def add(self, name: str, values: NDArray[Any], on_faces: bool) -> None:
-        """Add an array of points or, zero at cells that are no faces, of cells."""
-        if not on_faces:
-            self.mesh.point_data[name] = values
+    def add(self, output: Output, name: str) -> None:
+        """Add an output as an array, and make it active if it has a role. Cells that are no faces keep the
+        value of data of this type, or have 0."""
+        rows = output.rows[:, 0] if output.rows.shape[1] == 1 else output.rows
+        on_faces = output.place == "faces"
+        given, made = ((mesh.cell_data if on_faces else mesh.point_data) for mesh in (self.input, self.mesh))
+        array = given.VTKObject.GetAbstractArray(self.name) if self.name else None
+        if on_faces:
+            cells = (np.array(given[self.name], dtype=rows.dtype)
+                     if output.kind == "data" and array is not None else
+                     np.zeros((self.mesh.n_cells, *rows.shape[1:]), dtype=rows.dtype))
+            cells[self.face_cells] = rows
+            rows = cells
+        made[name] = rows
+        if not output.role:
             return
-        cells = np.zeros((self.mesh.n_cells, *values.shape[1:]), dtype=values.dtype)
-        cells[self.face_cells] = values
-        self.mesh.cell_data[name] = cells
+        of_normals = self.computed or self.name == given.active_normals_name
+        of_bytes = array is not None and array.GetDataType() == VTK_UNSIGNED_CHAR
+        role = attribute_of(output, of_normals, of_bytes)
+        if role == vtkDataSetAttributes.NORMALS:
+            made.VTKObject.SetActiveNormals(name)
+            return
+        activate = (self.mesh.set_active_vectors if role == vtkDataSetAttributes.VECTORS else
+                    self.mesh.set_active_scalars)
+        activate(name, preference="cell" if on_faces else "point")
 
-    def move(self, points: NDArray[Any]) -> None:
-        """Give the mesh points of its own, in the precision of the input's. The normals of its cells and
-        its tangents, which were those of the former points, are dropped."""
-        self.mesh.SetPoints(pyvista.vtk_points(points.astype(self.input.points.dtype)))
-        cells, given = self.mesh.cell_data, self.input.cell_data
-        for name in {given.active_normals_name, "Normals", "Tangents"} & set(given.keys()):
-            cells.remove(name)
-        if "Tangents" in self.input.point_data:
-            self.mesh.point_data.remove("Tangents")
-
-    def turn(self, faces: NDArray[Any]) -> None:
-        """Reverse the polygons of these faces."""
-        cells = np.unique(self.face_cells[faces]) - self.mesh.n_verts - self.mesh.n_lines
-        polygons = type(self.mesh.GetPolys())()
-        polygons.DeepCopy(self.mesh.GetPolys())
-        for cell in cells[cells < polygons.GetNumberOfCells()].tolist():
-            polygons.ReverseCellAtId(cell)
-        self.mesh.SetPolys(polygons)
+    def write(self, outputs: list[Output], prefix: str | None) -> None:
+        """Add the outputs to the mesh."""
+        for output in outputs:
+            if output.role == "coordinates":
+                before = vtkPolyData()
+                before.ShallowCopy(self.input)
+                before.SetPolys(self.mesh.GetPolys())  # which may be turned
+                move_points(output.rows, before, self.mesh)
+            elif output.place in ("points", "faces") and output.entry["columns"]:
+                self.add(output, name_of(output, self.name, prefix or ""))
 
     def with_edges(self, fine: RefinedSurface) -> _Block:
         """The block with the triangles of a finer surface in place of its faces, and with its data."""
-        given, cells = self.input, self.face_cells[fine.faces]
         mesh = pyvista.PolyData()
-        mesh.SetPoints(pyvista.vtk_points(fine.surface.points.astype(given.points.dtype)))
-        mesh.SetVerts(given.GetVerts())
-        mesh.SetLines(given.GetLines())
-        mesh.faces = np.insert(fine.surface.triangles, 0, 3, axis=1).ravel()
-        cells = np.concatenate([np.arange(given.n_verts + given.n_lines), cells])
-        for name, values in given.point_data.items():
-            numbers = np.asarray(values)
-            if numbers.dtype.kind in "biuf":
-                mesh.point_data[name] = fine.at_points(numbers)
-            else:
-                mesh.point_data[name] = numbers[fine.at_points(np.arange(given.n_points))]
-        for name, values in given.cell_data.items():
-            mesh.cell_data[name] = np.asarray(values)[cells]
-        mesh.cell_data["vtkOriginalCellIds"] = cells
-        for data, attributes in ((given.GetPointData(), mesh.GetPointData()),
-                                 (given.GetCellData(), mesh.GetCellData())):
-            for kind in range(data.NUM_ATTRIBUTES):
-                active = data.GetAbstractAttribute(kind)
-                if active is not None:
-                    attributes.SetActiveAttribute(active.GetName(), kind)
-        mesh.copy_meta_from(given)
-        mesh.field_data.update(given.field_data)
+        mesh.ShallowCopy(refined_polydata(self.input, fine.surface.points, fine.surface.triangles,
+                                          self.face_cells[fine.faces], fine.parents, {}))
+        mesh.copy_meta_from(self.input)
         block = _Block(mesh)
         block.origin, block.refined = self.origin, fine
         return block
@@ -636,27 +554,44 @@ class _Block:
         return block
 
 
+def _find_polydata(mesh: Any) -> Iterator[pyvista.PolyData]:
+    """The mesh, or the blocks of a MultiBlock at any depth, without those that are None. TypeError
+    with the remedy if there is anything other than a surface."""
+    if isinstance(mesh, pyvista.MultiBlock):
+        for block in mesh:
+            if block is not None:
+                yield from _find_polydata(block)
+    elif isinstance(mesh, pyvista.PolyData):
+        yield mesh
+    else:
+        remedy = "; mesh.extract_surface() gives its surface" if hasattr(
+            mesh, "extract_surface") else ""
+        raise TypeError(f"the mesh is a {type(mesh).__name__}; allowed: pyvista.PolyData, or a "
+                        f"pyvista.MultiBlock of it{remedy}")
+
+
 def _find_faces(mesh: pyvista.PolyData) -> tuple[Any, NDArray[np.int64]]:
     """The polygons, and strips as triangles, without hidden and ghost cells; the cell of each."""
-    corners, offsets = polygons_of(mesh.GetPolys())
-    sizes = np.diff(offsets)
-    first = mesh.n_verts + mesh.n_lines
-    triangles, of_strips = cut_strips(mesh.GetStrips(), first + len(sizes), mesh.n_points)
-    is_regular = len(triangles) == 0 and len(np.unique(sizes)) == 1 and sizes[0] > 2
-    faces: Any = (corners.reshape(-1, sizes[0]) if is_regular else
-                  [*np.split(corners, offsets[1:-1])[:len(sizes)], *triangles])
-    cells = np.append(first + np.arange(len(sizes)), of_strips)
-    kept = np.append(sizes > 2, np.ones(len(of_strips), dtype=bool))
-    flags = cell_flags(mesh)
+    corners, offsets, cells = read_cells(mesh).without_strips()
+    sizes, flags = np.diff(offsets), cell_flags(mesh)
+    kept = sizes > 2
     if flags is not None:
         kept &= (flags[cells] & ABSENT) == 0
-    return faces[kept] if is_regular else [faces[i] for i in np.flatnonzero(kept)], cells[kept]
+    if len(np.unique(sizes)) == 1 and sizes[0] > 2:
+        return corners.reshape(-1, sizes[0])[kept], cells[kept]
+    faces = np.split(corners, offsets[1:-1])
+    return [faces[i] for i in np.flatnonzero(kept)], cells[kept]
+
+
+def _has(mesh: Any, name: Any) -> bool:
+    """Whether there is a point or cell array of this name."""
+    return isinstance(name, str) and (name in mesh.point_data or name in mesh.cell_data)
 
 
 def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_Block]:
     """The surfaces of a mesh, without empty blocks. Keywords of refinement are used and removed."""
     refine_to, limit = (keywords.pop(new.name, new.default) for new in keywords_of(function))
-    leaves = list(find_polydata(mesh))
+    leaves = list(_find_polydata(mesh))
     blocks = [block for block in map(_Block, leaves) if not block.empty]
     if not any(leaf.n_points > 0 for leaf in leaves):
         raise ValueError("the mesh is empty; allowed: a surface of polygons or strips")
@@ -707,93 +642,49 @@ def _keywords(function: str, properties: dict[str, Any]) -> tuple[dict[str, Any]
     return found, found.pop("result_array_name", None)
 
 
+def _on_each(
+    name: str, mesh: Any, read: Callable[[_Block], dict[str, Any] | None], return_result: bool,
+    progress: Progress, properties: dict[str, Any],
+) -> Any:
+    """Call a function without times on each surface. read: the arguments of a surface; None: it passes."""
+    function = _relief if name == "relief" else getattr(_functions, name)
+    properties, result_name = _keywords(name, properties)
+    blocks, results = _find_surfaces(mesh, name, properties), []
+    for block in blocks:
+        arguments = read(block)
+        if arguments is None:
+            continue
+        outputs: list[Output] = []
+        result = function(block.surface, progress=progress, _outputs=outputs, **arguments, **properties)
+        results.append(result)
+        if name == "relief":
+            turned = (result.surface.triangles != block.surface.triangles).any(axis=1)
+            turn_polygons(block.mesh, block.face_cells[block.surface._core.faces()[turned]])
+        block.write(outputs, result_name)
+    return _built(mesh, blocks, results, return_result)
+
+
 def _prepare(
     function: str, block: _Block, array: str | None, names: Sequence[str | None],
     properties: dict[str, Any],
-) -> None:
+) -> Input:
     """The input of a block."""
-    mesh, surface = block.mesh, block.surface
-    data: Any = None
-    integers = False
-    if function == "harmonic_map":
-        name = mesh.point_data.active_normals_name if array is None else array
-        vectors = None if name is None else block.find_data(name, faces=True)
-        data = as_vectors(surface, vectors, properties, block.on_faces)
-        integers = has_integers(vectors)
-        block.name = name or "Normals"
-        block.computed = name is None
-    elif function == "turing_texture":
-        data = as_initial(surface, block.find("initial", array))
-    else:
-        values = block.find_data(array, faces=True)
-        data = as_data(block.name, values, surface.n_faces if block.on_faces else surface.n_points,
-                       "face" if block.on_faces else "point")
-        integers = has_integers(values)
-    if block.on_faces and block.has_strips:
-        raise ValueError(f"array is {shorten(block.name)}, a cell array of triangle strips; allowed: "
-                         "polygons, for example mesh.triangulate()")
     mask, roi, direction, fixed, rates, fidelity = names
-    marks = {argument: block.find(argument, given, faces=True)
-             for argument, given in (("mask", mask), ("fixed", fixed), ("fidelity", fidelity))}
-    if roi is not None:
-        outside = as_outside(block.find("roi", roi, faces=True), surface.n_points, surface.n_faces)
-        marks["mask"] = outside if outside.any() else None
-    block.given = Input(
-        surface, data, data_on_faces=block.on_faces,
-        directions=block.find("direction", direction, faces=True), directions_name="direction",
-        integers=integers, rates=block.find("rates", rates, points=False, faces=True),
+    if function == "harmonic_map":
+        name = block.mesh.point_data.active_normals_name if array is None else array
+        values = None if name is None else block.find_whole(name)
+        block.name, block.computed = name or "Normals", name is None
+    elif function == "turing_texture":
+        values = block.find("initial", array, faces=False)
+    else:
+        values = block.find_whole(array)
+    data, on_faces, integers = take_data(function, block.surface, values, name=block.name)
+    marks = block.find_all(mask=mask, roi=roi, fixed=fixed, fidelity=fidelity)
+    marks["mask"] = as_mask(marks["mask"], marks.pop("roi"), block.surface, properties)
+    return Input(
+        block.surface, data, data_on_faces=on_faces, directions=block.find("direction", direction),
+        directions_name="direction", integers=integers, rates=block.find("rates", rates, points=False),
         refined=block.refined if function in ESTIMATING else None, **marks)
-
-
-def _write_result(block: _Block, output: Output, name: str) -> None:
-    """Add an array in place of the data. Cells that are no faces keep the value of the data."""
-    cells = block.input.cell_data
-    source = cells if block.on_faces else block.input.point_data
-    has_data = block.name in source and not block.computed
-    shape = np.shape(source[block.name]) if has_data else output.values.shape
-    values = output.values[:, 0] if len(shape) < output.values.ndim else output.values
-    if output.place == "points":
-        block.mesh.point_data[name] = values
-        return
-    whole = np.array(cells[block.name], dtype=values.dtype)
-    whole[block.face_cells] = values
-    block.mesh.cell_data[name] = whole
-
-
-def _activate(block: _Block, output: Output, name: str) -> None:
-    """Make the array of an output active, as its role says: vectors in place of the normals, given or
-    computed, as normals."""
-    on_faces = output.place == "faces"
-    where: Any = "cell" if on_faces else "point"
-    is_vector = output.role == "vectors"
-    given = block.input.cell_data if on_faces else block.input.point_data
-    if is_vector and (block.computed or block.name == given.active_normals_name):
-        data = block.mesh.GetCellData() if on_faces else block.mesh.GetPointData()
-        data.SetActiveNormals(name)
-    elif is_vector and output.values.shape[1] == 3 and output.values.dtype != np.uint8:
-        block.mesh.set_active_vectors(name, preference=where)
-    elif output.role:
-        block.mesh.set_active_scalars(name, preference=where)
-
-
-def _write(block: _Block, outputs: list[Output], name: str | None) -> None:
-    """Add the outputs to the mesh, and make those active that have a role."""
-    for output in outputs:
-        if output.place not in ("points", "faces"):
-            continue
-        if output.role == "coordinates":
-            if not np.array_equal(output.values, block.surface.points):
-                block.move(output.values)
-            continue
-        array = name or block.name + output.name
-        if output.is_result:
-            _write_result(block, output, array)
-        elif output.is_beside_result:
-            block.add(array, output.values, output.place == "faces")
-        else:
-            array = (name or "") + output.name
-            block.add(array, output.values, output.place == "faces")
-        _activate(block, output, array)
 
 
 def _run(
@@ -801,39 +692,35 @@ def _run(
     times: Sequence[float] | None, return_result: bool, progress: Progress, properties: dict[str, Any],
 ) -> Any:
     properties, result_name = _keywords(function, properties)
-    if names[1] is not None:
-        exclude_outside(names[0], properties)
     if times is not None and not isinstance(times, Iterable):
         raise ValueError(f"times is {shorten(times)}; allowed: a list of numbers")
     dtype = properties.pop("dtype", None)
-    surfaces = _find_surfaces(mesh, function, properties)
-    check_colors(properties)
+    blocks, inputs, failures = [], [], []
+    for block in _find_surfaces(mesh, function, properties):
+        try:
+            given = _prepare(function, block, array, names, properties)
+            find_result_type(given.data, dtype)
+            blocks.append(block)
+            inputs.append(given)
+        except ValueError as error:
+            if _has(block.mesh, array):
+                raise
+            failures.append(error)
     runner = Runner(function, properties, {
         **ARRAYS, "DirectionArray": "direction",
         "InputArray": "initial" if function == "turing_texture" else "array"})
-    blocks, failures = [], []
-    for block in surfaces:
-        try:
-            _prepare(function, block, array, names, properties)
-            find_result_type(block.given.data if block.given else None, dtype)
-            blocks.append(block)
-        except ValueError as error:
-            if block.has(array):
-                raise
-            failures.append(error)
     if not blocks:
         raise failures[0]
-    inputs = [block.given for block in blocks if block.given]
     run = _core.ModelRun(function)
 
     def build(state: list[dict[str, Any]]) -> tuple[Any, Any]:
         results: list[Result] = []
         written = [block.fresh() for block in blocks]
-        for number, block in enumerate(written):
-            outputs = find_outputs(run, number, block.given, runner, dtype)
-            _write(block, outputs, result_name)
-            found = {"points": np.array(block.surface.points), **state[number]}
-            results.append(make_result(_RESULTS.get(function, DiffusionResult), outputs, found))
+        for number, (block, given) in enumerate(zip(written, inputs)):
+            outputs = find_outputs(run, number, given, dtype, runner.call)
+            block.write(outputs, result_name)
+            results.append(make_result(
+                _RESULTS.get(function, DiffusionResult), outputs, state[number], block.surface))
         whole = _rebuild(mesh, iter(written))
         return whole, results if isinstance(mesh, pyvista.MultiBlock) else results[0]
 

@@ -339,7 +339,14 @@ class Meshes(unittest.TestCase):
         # The triangles of PyVista 0.44's icosphere face inwards.
         self.assertGreater((np.sign(cosines[0]) * cosines).min(), 0.97)
         np.testing.assert_array_equal(mesh["n"], before)
-        self.assertNotIn("ofCells", moved.cell_data)  # those of the noisy points
+        # Normals, of points and of cells, are those of the moved points, on their former side.
+        found = moved.cell_data["ofCells"]
+        self.assertEqual((moved.cell_data.active_normals_name, moved["n"].dtype), ("ofCells", mesh["n"].dtype))
+        self.assertGreater(np.abs(found - mesh.cell_data["ofCells"]).max(), 0.01)
+        a, b, c = moved.points[moved.regular_faces].transpose(1, 0, 2)
+        np.testing.assert_allclose(np.einsum("ij,ij->i", found, np.cross(b - a, c - a)),
+                                   2 * moved.compute_cell_sizes()["Area"], rtol=1e-4)
+        np.testing.assert_allclose(np.linalg.norm(moved["n"], axis=1), 1.0, atol=1e-6)
         self.assertIn("ofCells", mesh.cell_data)
         self.assertLess(np.linalg.norm(moved.points, axis=1)[~north].std(), 0.003)
         np.testing.assert_allclose(before + moved["Displacement"], moved.points, atol=1e-7)
@@ -401,7 +408,8 @@ class Meshes(unittest.TestCase):
         self.assertEqual(result.point_data.active_scalars_name, "tInterpolated")
         self.assertNotIn("tInterpolated", mesh.array_names)
         probes["other"] = 2.0 * probes["t"]
-        named = interpolate(mesh, "other", points=probes, exact=True, result_array_name="u")
+        named = interpolate(mesh, "other", points=probes, exact=True, compute_error=True, result_array_name="u")
+        self.assertIn("uError", named.point_data)
         np.testing.assert_allclose(
             named["u"], 2.0 * interpolate(mesh, "t", points=probes, exact=True)["tInterpolated"], atol=1e-12)
         blocks, reports = interpolate(pyvista.MultiBlock([mesh, None, mesh.scale(1.2, inplace=False)]),

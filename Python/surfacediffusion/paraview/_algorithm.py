@@ -6,7 +6,6 @@ and warnings. It is the update of vtkSurfaceFilter, in one process."""
 from __future__ import annotations
 
 import functools
-import hashlib
 from typing import Any, Callable, Iterable
 
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
@@ -16,13 +15,15 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
+from .._models import Output
+from .._polydata import ABSENT, SurfaceError, cell_flags
 from .._refinement import mean_edge_length
 from ._fields import (
-    BY_INDEX, FLAGS, ArrayFinder, Choice, Fields, find_disagreement, join_sentences, make_core)
+    BY_INDEX, FLAGS, Choice, Fields, find_array, find_disagreement, join_sentences, read_fields)
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement
-from ._surfaces import (
-    ABSENT, Block, Parts, Shapes, SurfaceError, cell_flags, copy_structure, to_numpy)
+from ._results import write_outputs
+from ._surfaces import Block, Parts, Shapes, copy_structure, hash_arrays
 
 #: Properties that are no settings of the extension, with their defaults.
 _OWN: dict[str, Any] = {
@@ -74,6 +75,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     RESULT_NAME = ""
 
     HAS_POINT_INPUT = False
+    RUN: Any = None  #: the class of its runs
+    NAMED_AFTER = ""  #: the array of the fields that results are named after
+    MAY_REFINE_AUTOMATICALLY = False  #: whether RefineTo may be -1
     RULES = {1: "mask", 3: "mark", 5: "weight", 6: "mark"}  #: of refinement, by the index of an array
     DEFAULT_CHOICE: Choice | None = None
 
@@ -84,6 +88,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self.own = {**_OWN, "ResultArrayName": self.RESULT_NAME}
         self.choices: dict[int, Choice] = {}
         self.shapes = Shapes()
+        self._run = self.RUN(self.MODEL)
         self._numbers: dict[str, Any] = {}
         self._reported: list[str] = []
         self._warnings: list[str] = []  # of this class, in the present update
@@ -150,7 +155,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return 1
 
     def RequestDataObject(self, _request: Any, inputs: Any, outputs: Any) -> int:
-        given, output = self._first_input(inputs), outputs.GetInformationObject(0)
+        given, output = self._find_input(inputs, 0), outputs.GetInformationObject(0)
         made = output.Get(vtkDataObject.DATA_OBJECT())
         if given is None:
             if made is None:
@@ -163,7 +168,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         made = [self.GetOutputData(outputs, port) for port in range(len(self.OUTPUTS))]
         for extra in made[1:]:
             extra.Initialize()
-        parts = copy_structure(self._first_input(inputs), made[0])
+        parts = copy_structure(self._find_input(inputs, 0), made[0])
         if self._failed_with and self._failed_with == self._find_state(inputs, parts):  # at another time
             self._quiet_executive()
             return 0
@@ -205,38 +210,30 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     def _find_state(self, inputs: Any, parts: Parts) -> list[Any]:
         """The contents of the surfaces and the surface that each is a piece of, and when the filter and its
         second input were modified. (ParaView copies the input for each time.)"""
-        digest = hashlib.sha1()
+        second = self._find_input(inputs, 1)
+        state: list[Any] = [self.GetMTime(), 0 if second is None else second.GetMTime()]
         for block in parts.blocks:
             data = block.input
-            digest.update(str(block.surface).encode())
-            arrays = [data.GetPoints().GetData()] if data.GetPoints() else []
+            arrays = [data.GetPoints().GetData() if data.GetPoints() else None]
             for cells in (data.GetPolys(), data.GetStrips()):
                 arrays += [cells.GetOffsetsArray(), cells.GetConnectivityArray()]
             for attributes in (data.GetPointData(), data.GetCellData()):
-                for i in range(attributes.GetNumberOfArrays()):
-                    array = attributes.GetArray(i)
-                    arrays += [] if array is None else [array]
-                    digest.update(f"{attributes.GetArrayName(i)} {attributes.IsArrayAnAttribute(i)}".encode())
-            for array in arrays:
-                digest.update(to_numpy(array).tobytes())
-        second = self._second_input(inputs)
-        return [self.GetMTime(), 0 if second is None else second.GetMTime(), digest.hexdigest()]
+                numbers = range(attributes.GetNumberOfArrays())
+                arrays += [attributes.GetArray(i) for i in numbers]
+                state += [(attributes.GetArrayName(i), attributes.IsArrayAnAttribute(i)) for i in numbers]
+            state += [block.surface, hash_arrays(arrays)]
+        return state
 
     def ReleaseCache(self) -> None:
         """Free what is kept from one update to the next."""
         self.shapes = Shapes()
+        self._run.clear()
 
     @staticmethod
-    def _first_input(inputs: Any) -> Any:
-        if inputs[0].GetNumberOfInformationObjects() == 0:
+    def _find_input(inputs: Any, port: int) -> Any:
+        if port >= len(inputs) or inputs[port].GetNumberOfInformationObjects() == 0:
             return None
-        return inputs[0].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
-
-    @staticmethod
-    def _second_input(inputs: Any) -> Any:
-        if len(inputs) < 2 or inputs[1].GetNumberOfInformationObjects() == 0:
-            return None
-        return inputs[1].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
+        return inputs[port].GetInformationObject(0).Get(vtkDataObject.DATA_OBJECT())
 
     # Update ------------------------------------------------------------------------------------
 
@@ -261,12 +258,20 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         blocks = self._select(blocks, parts, problems)
         # Problems of the arrays are reported with those of the settings.
         self.begin(inputs)
-        fields = self._find_all(blocks, problems)
+        problems += [spell(words) for words in _core.find_problems(self.MODEL, self.settings, None)]
+        found = self._find_all(blocks, problems)
         if problems:
             return "; ".join(sorted(set(problems)))
-        blocks = [block for block, _ in fields]
-        of_blocks = [found for _, found in fields]
-        replaced, warnings = self.run(request, outputs, blocks, of_blocks, made)
+        self._run.update([fields.given.core for _, fields in found], self.settings, self.progress)
+        self.seek(request, outputs)
+        self.progress(0.95)  # the last chance to abort
+        results, replaced = [], []
+        for number, (block, fields) in enumerate(found):
+            results.append(self.read_outputs(number, block, fields))
+            data = getattr(fields, self.NAMED_AFTER).values if self.NAMED_AFTER else None
+            replaced += write_outputs(results[-1], fields, data, block, self.own["ResultArrayName"])
+        replaced += self.write_tables([block for block, _ in found], results, made)
+        self._numbers = self._run.numbers()
         for surface in stitched:
             scatter_results(surface)
             self.complete_pieces(surface)
@@ -275,13 +280,13 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             self._warnings.insert(0, f"results replace arrays of the input: {names}; to keep these, set "
                                   "another ResultArrayName")
         self._warnings += self._of_surfaces
-        self._report_warnings(warnings)
+        self._report_warnings([spell(words) for words in self._run.new_warnings()])
         self.UpdateProgress(1.0)
         return ""
 
     def begin(self, inputs: Any) -> None:
         """Read the points of the second input, which all blocks share."""
-        data = self._second_input(inputs)
+        data = self._find_input(inputs, 1)
         self.has_points = data is not None
         nothing: tuple[Any, list[str]] = (None, [])
         self.points, self.problems_of_points = nothing if data is None else self.read_points(data)
@@ -295,12 +300,16 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         self.find_arrays(block, fields, sorted(self.ARRAYS))
         return fields.data.values is not None or 0 not in self.ARRAYS
 
-    def run(
-        self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
-    ) -> tuple[list[str], list[str]]:
-        """Compute and write. Return the names of arrays that results have replaced, and the warnings that
-        hold now and did not hold before."""
+    def seek(self, request: Any, outputs: Any) -> None:
+        """Go to the step that is asked for."""
+
+    def read_outputs(self, number: int, block: Block, fields: Fields) -> list[Output]:
+        """Return the outputs of the run on a block."""
         raise NotImplementedError
+
+    def write_tables(self, blocks: list[Block], results: list[list[Output]], made: list[Any]) -> list[str]:
+        """Fill the further outputs. Return the names of arrays that were replaced."""
+        return []
 
     def _check_own(self) -> list[str]:
         own, problems = self.own, []
@@ -309,17 +318,14 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             problems.append(f"SeamTolerance is {seam:g}; allowed: finite numbers, 0 or more, or -1: 1e-6 of "
                             "the bounding box")
         length = own["RefineTo"]
-        if not (0.0 <= length < float("inf") or (self.may_refine_automatically() and length == -1.0)):
-            also = ", or -1: automatic" if self.may_refine_automatically() else ""
+        if not (0.0 <= length < float("inf") or (self.MAY_REFINE_AUTOMATICALLY and length == -1.0)):
+            also = ", or -1: automatic" if self.MAY_REFINE_AUTOMATICALLY else ""
             problems.append(f"RefineTo is {length:g}; allowed: finite numbers, 0 or more{also}")
         for name, lowest, allowed in (("MaximumNumberOfTriangles", 1, "integers, 1 or more"),
                                       ("NumberOfThreads", 0, "integers, 0 or more; 0: all")):
             if own[name] < lowest:
                 problems.append(f"{name} is {own[name]}; allowed: {allowed}")
         return problems
-
-    def may_refine_automatically(self) -> bool:
-        return False
 
     def _select(self, blocks: list[Block], parts: Parts, problems: list[str]) -> list[Block]:
         """Return the blocks with polygons."""
@@ -381,18 +387,19 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         raise NotImplementedError
 
     def find_arrays(self, block: Block, fields: Fields, indices: Iterable[int]) -> None:
-        arrays = ArrayFinder(self.choices, block.input, fields)
         for index in indices:
-            setattr(fields, BY_INDEX[index], arrays.find(index, *self.ARRAYS[index]))
+            choice = self.choices.get(index, Choice())
+            setattr(fields, BY_INDEX[index],
+                    find_array(choice, index, *self.ARRAYS[index], block.input, fields))
 
     def check(self, found: list[tuple[Block, Fields]], problems: list[str]) -> None:
         """Append the problems of the settings with the arrays of each block."""
         sentences = []
         for block, fields in found:
             self.shapes.find(block)
-            make_core(fields, block)
+            read_fields(fields, block)
             sentences += [(spell(words), block.name) for words in
-                          _core.find_problems(self.MODEL, self.settings, fields.core)]
+                          _core.find_problems(self.MODEL, self.settings, fields.given.core)]
         problems += join_sentences(sentences, len(found))
 
     # Reports -----------------------------------------------------------------------------------
@@ -407,9 +414,6 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                 self.SetAbortOutput(False)  # the executive would empty the output
         if aborted:
             raise _Aborted
-
-    def set_numbers(self, numbers: dict[str, Any]) -> None:
-        self._numbers = numbers
 
     def _report_error(self, text: str) -> None:
         self._quiet_executive()

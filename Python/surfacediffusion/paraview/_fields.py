@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT, vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkCellTypes, vtkDataObject, vtkDataSetAttributes, vtkPointSet
 
-from .. import _core
+from .._polydata import SurfaceError, hidden_points, places_of, to_numpy
+from .._run import Given, make_core
 from .._surface import data_components
-from ._surfaces import BETWEEN, GIVEN_CELL, Block, SurfaceError, hidden_points, to_numpy
+from ._surfaces import BETWEEN, GIVEN_CELL, Block
 
 #: The attribute of Fields that has the array of an index; 7 has terms of data in place of data.
 BY_INDEX = ("data", "mask", "direction", "fixed", "rates", "fidelity", "seeds", "data", "speeds",
@@ -76,88 +77,60 @@ class Fields:
     data_are_computed: bool = False  #: normals
     result_is_normals: bool = False
     alpha_is_data: bool = False
-    samples: Samples | None = None
-    sources: Sources | None = None
+    samples: Any = None  #: places, values, weights and name of values that need not be at points of the surface
+    sources: Any = None  #: places of points, ends of lines, and which points are hidden
     absent: dict[int, tuple[str, str]] = field(default_factory=dict)  #: index: label, problem
     problems: list[str] = field(default_factory=list)
-    core: Any = None
-    integers: bool = False
+    given: Any = None
 
     def name(self, attribute: str = "data") -> str:
         array = getattr(self, attribute).values
         return "" if array is None else array.GetName() or ""
 
 
-@dataclass
-class Samples:
-    """Values at points that need not be points of the surface."""
+def find_array(choice: Choice, index: int, name: str, components: int, block: Any, fields: Fields) -> Array:
+    """The array that was chosen, if a block has it. Appends problems."""
+    if not choice.is_set and index != 0:
+        return Array()
+    label = f'{name} "{choice.name}"' if choice.name else name
+    if choice.association not in (POINTS, CELLS, POINTS_THEN_CELLS):
+        fields.problems.append(
+            f"{label} has association {choice.association}; allowed: points (0) or cells (1)")
+        return Array()
+    found, on_cells = choice.locate(block)
+    if not isinstance(found, vtkDataArray):
+        problem = (_describe_absence(choice, block) if found is None else
+                   f"is a {found.GetClassName()}; allowed: numeric arrays")
+        fields.absent[index] = (label, f"{label} {problem}")
+        return Array()
+    tuples = block.GetNumberOfCells() if on_cells else block.GetNumberOfPoints()
+    size = found.GetNumberOfComponents()
+    if found.GetNumberOfTuples() != tuples:
+        fields.problems.append(f"{label} has {found.GetNumberOfTuples()} tuples; allowed: {tuples}, one per "
+                               + ("cell" if on_cells else "point"))
+        return Array()
+    if size < 1 if components == ANY else size != components:
+        unset = "" if choice.name else "is not set, and the active array " + (
+            f'"{found.GetName()}" ' if found.GetName() else "")
+        fields.problems.append(f"{label} {unset}has {size} components; allowed: "
+                               + ("1 or more" if components == ANY else str(components)))
+        return Array()
+    return Array(found, on_cells)
 
-    places: NDArray[np.float64]
-    values: NDArray[np.float64]
-    weights: NDArray[np.float64] | None
-    name: str
 
-
-@dataclass
-class Sources:
-    """Points and lines of distances."""
-
-    places: NDArray[np.float64]
-    segments: NDArray[np.int64]
-    hidden: NDArray[np.uint8]  #: of the points
-
-
-class ArrayFinder:
-    """Finds the arrays of a block that were chosen."""
-
-    def __init__(self, choices: dict[int, Choice], block: Any, fields: Fields) -> None:
-        self._choices, self._block, self._fields = choices, block, fields
-
-    def find(self, index: int, name: str, components: int) -> Array:
-        choice = self._choices.get(index, Choice())
-        if not choice.is_set and index != 0:
-            return Array()
-        label = f'{name} "{choice.name}"' if choice.name else name
-        problems = self._fields.problems
-        if choice.association not in (POINTS, CELLS, POINTS_THEN_CELLS):
-            problems.append(f"{label} has association {choice.association}; allowed: points (0) or cells (1)")
-            return Array()
-        block = self._block
-        found, on_cells = choice.locate(block)
-        if found is None:
-            self._fields.absent[index] = (label, f"{label} {self._describe_absence(choice)}")
-            return Array()
-        if not isinstance(found, vtkDataArray):
-            problem = f"{label} is a {found.GetClassName()}; allowed: numeric arrays"
-            self._fields.absent[index] = (label, problem)
-            return Array()
-        tuples = block.GetNumberOfCells() if on_cells else block.GetNumberOfPoints()
-        if found.GetNumberOfTuples() != tuples:
-            problems.append(f"{label} has {found.GetNumberOfTuples()} tuples; allowed: {tuples}, one per "
-                            + ("cell" if on_cells else "point"))
-            return Array()
-        size = found.GetNumberOfComponents()
-        if size < 1 if components == ANY else size != components:
-            unset = "" if choice.name else "is not set, and the active array " + (
-                f'"{found.GetName()}" ' if found.GetName() else "")
-            problems.append(f"{label} {unset}has {size} components; allowed: "
-                            + ("1 or more" if components == ANY else str(components)))
-            return Array()
-        return Array(found, on_cells)
-
-    def _describe_absence(self, choice: Choice) -> str:
-        on_points, on_cells = choice.association != CELLS, choice.association != POINTS
-        kind = "point or cell" if on_points and on_cells else "cell" if on_cells else "point"
-        if not choice.name:
-            attribute = vtkDataSetAttributes.GetAttributeTypeAsString(
-                choice.attribute or vtkDataSetAttributes.SCALARS)
-            return (f"is not set and the input has no active {kind} {attribute}; choose a {kind} array")
-        text = f"is not among the {kind} arrays of the input; choose one of them"
-        if not on_cells and self._block.GetCellData().HasArray(choice.name):
-            return text + ", or association 1 for the cell array of this name"
-        if not on_points and self._block.GetPointData().HasArray(choice.name):
-            return text + ", or association 0 for the point array of this name"
-        return text
+def _describe_absence(choice: Choice, block: Any) -> str:
+    on_points, on_cells = choice.association != CELLS, choice.association != POINTS
+    kind = "point or cell" if on_points and on_cells else "cell" if on_cells else "point"
+    if not choice.name:
+        attribute = vtkDataSetAttributes.GetAttributeTypeAsString(
+            choice.attribute or vtkDataSetAttributes.SCALARS)
+        return (f"is not set and the input has no active {kind} {attribute}; choose a {kind} array")
+    text = f"is not among the {kind} arrays of the input; choose one of them"
+    if not on_cells and block.GetCellData().HasArray(choice.name):
+        return text + ", or association 1 for the cell array of this name"
+    if not on_points and block.GetPointData().HasArray(choice.name):
+        return text + ", or association 0 for the point array of this name"
+    return text
 
 
 def find_disagreement(choices: dict[int, Choice], blocks: list[Block]) -> str:
@@ -216,47 +189,46 @@ def join_sentences(found: list[tuple[str, str]], blocks: int) -> list[str]:
             for sentence, known in names.items()]
 
 
-def make_core(fields: Fields, block: Block) -> None:
+def read_fields(fields: Fields, block: Block) -> None:
     """What the numerics take. Raises SurfaceError on values that are not allowed."""
-    data, places = None, []
-    if fields.data.values is not None:
-        data = _as_data(fields.data.values)
-        data = data.astype(np.float64) if fields.alpha_is_data else data
-        fields.integers = fields.data.values.GetDataType() not in (VTK_FLOAT, VTK_DOUBLE)
-    flags = {name: _as_flags(getattr(fields, name).values) for name in ("mask", "fixed")}
-    for name, found in (("data", fields.data), ("mask", fields.mask), ("fixed", fields.fixed),
-                        ("directions", fields.direction), ("fidelity", fields.fidelity),
-                        ("seeds", fields.seeds)):
-        if found.values is not None and found.on_cells:
-            places.append(name)
-    fields.core = _core.Fields(
-        block.core, data, 0 if data is None else data_components(data), flags["mask"], flags["fixed"],
-        _as_numbers(fields.direction.values), _as_numbers(fields.rates.values),
-        _as_numbers(fields.fidelity.values), _as_numbers(fields.seeds.values), fields.data_are_terms, places)
-    fields.core.set_names(fields.name(), block.name, fields.name("direction"), fields.name("seeds"))
+    arrays = {name: (convert(found.values), found.on_cells) for name, convert, found in (
+        ("data", _as_data, fields.data), ("mask", _as_flags, fields.mask), ("fixed", _as_flags, fields.fixed),
+        ("directions", _as_numbers, fields.direction), ("fidelity", _as_numbers, fields.fidelity),
+        ("seeds", _as_numbers, fields.seeds))}
+    arrays["rates"] = _as_numbers(fields.rates.values), False
+    data, on_cells = arrays["data"]
+    if fields.alpha_is_data and data is not None:
+        data = data.astype(np.float64)
+        arrays["data"] = data, on_cells
+    integers = data is not None and fields.data.values.GetDataType() not in (VTK_FLOAT, VTK_DOUBLE)
+    fields.given = Given(make_core(block.core, arrays, fields.data_are_terms), data, integers, {
+        "points": block.input.GetNumberOfPoints(), "faces": block.input.GetNumberOfCells()})
+    core = fields.given.core
+    core.set_names(fields.name(), block.name, fields.name("direction"), fields.name("seeds"))
     if fields.samples is not None:
-        fields.core.set_samples(
-            fields.samples.places, fields.samples.values, fields.samples.weights, fields.samples.name)
+        core.set_samples(*fields.samples)
     if fields.sources is not None:
-        fields.core.set_sources(fields.sources.places, fields.sources.segments, fields.sources.hidden)
+        core.set_sources(*fields.sources)
     speeds, times = _as_numbers(fields.speeds.values), _as_numbers(fields.start_times.values)
     if speeds is not None:
-        fields.core.set_speeds(speeds, fields.speeds.on_cells)
+        core.set_speeds(speeds, fields.speeds.on_cells)
     if times is not None:
-        fields.core.set_start_times(times)
+        core.set_start_times(times)
     between = block.input.GetPointData().GetArray(BETWEEN)
     given = block.input.GetCellData().GetArray(GIVEN_CELL)
     if between is not None and given is not None:
-        fields.core.set_measured(to_numpy(between), to_numpy(given).astype(np.int64))
+        core.set_measured(to_numpy(between), to_numpy(given).astype(np.int64))
     if fields.global_ids is not None:
         ids, count = fields.global_ids, block.input.GetNumberOfPoints()
         if ids.GetNumberOfTuples() != count:
             raise SurfaceError(f"the input's array \"{ids.GetName()}\" has {ids.GetNumberOfTuples()} "
                                f"tuples; allowed: {count}, one per point")
-        fields.core.set_ids(to_numpy(ids).astype(np.int64))
+        core.set_ids(to_numpy(ids).astype(np.int64))
 
 
-def _as_data(array: Any) -> NDArray[Any]:
+def _as_data(array: Any) -> NDArray[Any] | None:
+    if array is None:
+        return None
     values = to_numpy(array)
     kept = values.dtype in (np.float32, np.float64, np.uint8)
     return np.ascontiguousarray(
@@ -275,7 +247,7 @@ _POINT_SET = ("; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply
               "vtkTableToPolyData)")
 
 
-def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Samples | None, list[str]]:
+def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Any, list[str]]:
     """The values of the second input of an interpolation, and problems with it."""
     if not isinstance(data, vtkPointSet):
         return None, [f"the points with values are a {data.GetClassName()}" + _POINT_SET]
@@ -306,16 +278,16 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Samples 
         problems.append(f"PointWeightArray has {weights.GetNumberOfComponents()} components; allowed: 1")
     if problems:
         return None, problems
-    given = _as_data(values)
+    given: Any = _as_data(values)
     given = np.array(given[:, :data_components(given)], dtype=np.float64, order="C")
-    places, factors = _places(data), _as_numbers(weights)
+    places, factors = places_of(data), _as_numbers(weights)
     if hidden.any():  # hidden points have no value
         places[hidden], given[hidden] = 0.0, np.nan
         factors = None if factors is None else np.where(hidden, 0.0, factors)
-    return Samples(places, given, factors, values.GetName() or ""), []
+    return (places, given, factors, values.GetName() or ""), []
 
 
-def read_sources(data: Any) -> tuple[Sources | None, list[str]]:
+def read_sources(data: Any) -> tuple[Any, list[str]]:
     """The points and lines of the second input of distances, and problems with it."""
     if not isinstance(data, vtkPointSet):
         return None, [f"the second input, the sources, is a {data.GetClassName()}" + _POINT_SET]
@@ -341,16 +313,10 @@ def read_sources(data: Any) -> tuple[Sources | None, list[str]]:
         return None, ["the second input, the sources, has " + (
             f"{len(hidden)} hidden points; allowed: 1 or more points or lines that are not hidden"
             if len(hidden) else "0 points; allowed: 1 or more points or lines")]
-    return Sources(_places(data), np.array(segments, dtype=np.int64), hidden.astype(np.uint8)), []
+    return (places_of(data), np.array(segments, dtype=np.int64), hidden.astype(np.uint8)), []
 
 
 def _hidden(data: Any) -> NDArray[np.bool_]:
     """Which points are hidden."""
     flags = hidden_points(data)
     return np.zeros(data.GetNumberOfPoints(), dtype=bool) if flags is None else flags != 0
-
-
-def _places(data: Any) -> NDArray[np.float64]:
-    if data.GetNumberOfPoints() == 0:
-        return np.empty((0, 3))
-    return to_numpy(data.GetPoints().GetData()).astype(np.float64, order="C")

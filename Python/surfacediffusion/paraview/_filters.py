@@ -5,25 +5,25 @@ do not say."""
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
-from vtkmodules.vtkCommonCore import VTK_FLOAT, VTK_UNSIGNED_CHAR
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkDataSetAttributes, vtkPolyData
+from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSetAttributes, vtkPolyData
 from vtkmodules.vtkCommonExecutionModel import vtkDemandDrivenPipeline, vtkStreamingDemandDrivenPipeline
 
 from .. import _core
-from ._algorithm import SurfaceFilter, list_settings, spell
+from .._models import Output, find_outputs, read_outputs
+from .._polydata import HIDDEN_CELL, cell_flags, compute_point_normals, make_array, to_numpy, turn_polygons
+from ._algorithm import SurfaceFilter, list_settings
 from ._fields import (
     CELLS, POINTS, POINTS_THEN_CELLS, Choice, Fields, join_sentences, read_samples, read_sources,
     settle_absence,
 )
-from ._normals import compute_point_normals
 from ._pieces import Stitched
-from ._results import (
-    Output, make_array, read_outputs, write_columns, write_curves, write_history, write_outputs,
-)
-from ._surfaces import HIDDEN_CELL, Block, cell_flags, to_numpy
+from ._results import write_columns, write_curves, write_history
+from ._surfaces import Block
 
 _SCALARS = Choice(POINTS_THEN_CELLS, None, vtkDataSetAttributes.SCALARS)
 _TIME = vtkStreamingDemandDrivenPipeline
@@ -32,18 +32,9 @@ _TIME = vtkStreamingDemandDrivenPipeline
 class RunFilter(SurfaceFilter):
     """A filter without time steps."""
 
-    NAMED_AFTER = ""  #: the array of the fields that results are named after
-
-    def __init__(self) -> None:
-        SurfaceFilter.__init__(self)
-        self._runs = _core.SurfaceRuns(self.MODEL)
-
-    def ReleaseCache(self) -> None:
-        SurfaceFilter.ReleaseCache(self)
-        self._runs.clear()
+    RUN = _core.SurfaceRuns
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
-        problems += [spell(words) for words in _core.find_problems(self.MODEL, self.settings, None)]
         if self.RESULT_NAME and not self.own["ResultArrayName"]:
             problems.append("ResultArrayName is empty; allowed: any name")
         found, everything, sentences = [], [], []
@@ -63,53 +54,27 @@ class RunFilter(SurfaceFilter):
             self.check(found, problems)
         return found
 
-    def run(
-        self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
-    ) -> tuple[list[str], list[str]]:
-        self._runs.update([found.core for found in fields], self.settings, self.progress)
-        self.progress(0.95)  # the last chance to abort
-        replaced = []
-        for number, (block, found) in enumerate(zip(blocks, fields)):
-            def write(entry: int, values: Any, source: Any, number: int = number) -> None:
-                self._runs.write(number, entry, values, source)
-
-            results = read_outputs(self._runs.outputs(number), write, found, block, np.float64)
-            turned = self._runs.turned_triangles(number)
-            if turned.size:
-                _turn_polygons(block.output, sorted(set(block.cells[turned].tolist())))
-            data = getattr(found, self.NAMED_AFTER).values if self.NAMED_AFTER else None
-            replaced += write_outputs(results, found, data, block, self.own["ResultArrayName"])
-        self.set_numbers(self._runs.numbers())
-        return replaced, [spell(words) for words in self._runs.new_warnings()]
-
-
-def _turn_polygons(surface: Any, cells: list[int]) -> None:
-    first = surface.GetNumberOfVerts() + surface.GetNumberOfLines()
-    polygons = vtkCellArray()
-    polygons.DeepCopy(surface.GetPolys())
-    for cell in cells:
-        if 0 <= cell - first < surface.GetNumberOfPolys():
-            polygons.ReverseCellAtId(cell - first)
-    surface.SetPolys(polygons)
+    def read_outputs(self, number: int, block: Block, fields: Fields) -> list[Output]:
+        turned = self._run.turned_triangles(number)
+        if turned.size:
+            turn_polygons(block.output, block.cells[turned])
+        write = functools.partial(self._run.write, number)
+        return read_outputs(self._run.outputs(number), write, fields.given, np.float64)
 
 
 class ModelFilter(SurfaceFilter):
     """A filter of a model of arrays, which may have time steps."""
 
+    RUN = _core.ModelRun
+    NAMED_AFTER = "data"
     DEFAULT_CHOICE = _SCALARS
 
     def __init__(self) -> None:
         SurfaceFilter.__init__(self)
-        self._run = _core.ModelRun(self.MODEL)
         self._length: tuple[Any, int] | None = None  # settings and last step of a run that ended early
-
-    def ReleaseCache(self) -> None:
-        SurfaceFilter.ReleaseCache(self)
-        self._run.clear()
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
         """Blocks without data pass through if at least one block has data."""
-        problems += [spell(words) for words in _core.find_problems(self.MODEL, self.settings, None)]
         precision = self.own["OutputPrecision"]
         if precision not in (0, 1, 2):
             problems.append(f"OutputPrecision is {precision}; allowed: 0 Single, 1 Double, 2 Input")
@@ -140,30 +105,19 @@ class ModelFilter(SurfaceFilter):
             self.check([pair for pair in found if not pair[1].problems], problems)
         return found
 
-    def run(
-        self, request: Any, outputs: Any, blocks: list[Block], fields: list[Fields], made: list[Any]
-    ) -> tuple[list[str], list[str]]:
-        run = self._run
-        run.update([found.core for found in fields], self.settings, self.progress)
-        step = self._choose_step(request, outputs)
-        run.seek(step, self.progress)
-        self.progress(0.95)  # the last chance to abort
-        results, replaced = [], []
-        for number, (block, found) in enumerate(zip(blocks, fields)):
-            def write(entry: int, values: Any, source: Any, number: int = number,
-                      found: Fields = found) -> None:
-                run.write(number, entry, values, source, -1, found.integers)
+    def seek(self, request: Any, outputs: Any) -> None:
+        self._run.seek(self._choose_step(request, outputs), self.progress)
 
-            results.append(read_outputs(run.outputs(number), write, found, block, self._result_type(found)))
-            replaced += write_outputs(
-                results[-1], found, found.data.values, block, self.own["ResultArrayName"])
-        replaced += self._write_weights(blocks, results)
+    def read_outputs(self, number: int, block: Block, fields: Fields) -> list[Output]:
+        dtype = (np.float32, np.float64, None)[self.own["OutputPrecision"]]
+        return find_outputs(self._run, number, fields.given, dtype)
+
+    def write_tables(self, blocks: list[Block], results: list[list[Output]], made: list[Any]) -> list[str]:
         if not write_columns(results, made[1]):
-            write_history(run.history(), made[1])
+            write_history(self._run.history(), made[1])
         if len(made) > 2:
             write_curves(results, self.own["ResultArrayName"], made[2])
-        self.set_numbers(run.numbers())
-        return replaced, [spell(words) for words in run.new_warnings()]
+        return self._write_weights(blocks, results)
 
     def complete_pieces(self, surface: Stitched) -> None:
         """Vertices, lines and hidden cells keep their value, as those of a surface in one piece do."""
@@ -180,15 +134,9 @@ class ModelFilter(SurfaceFilter):
                 keeps |= (flags & HIDDEN_CELL) != 0
             to_numpy(result)[keeps] = to_numpy(fields.data.values)[keeps]
 
-    def _result_type(self, fields: Fields) -> Any:
-        data, precision = fields.data.values, self.own["OutputPrecision"]
-        if precision == 2 and data is not None:
-            return {VTK_FLOAT: np.float32, VTK_UNSIGNED_CHAR: np.uint8}.get(data.GetDataType(), np.float64)
-        return np.float32 if precision == 0 else np.float64
-
     def _write_weights(self, blocks: list[Block], results: list[list[Output]]) -> list[str]:
         """If blocks have different weights, which AutomaticFidelity finds, each has its own as field data."""
-        weights = [next((float(output.values[0, 0]) for output in outputs if output.place == "number"
+        weights = [next((float(output.rows[0, 0]) for output in outputs if output.place == "number"
                          and output.name == "EffectiveFidelityWeight"), 0.0) for outputs in results]
         name = self.own["ResultArrayName"] + "EffectiveFidelityWeight"
         replaced = []
@@ -304,6 +252,7 @@ class HarmonicMap(ModelFilter):
 
 class Texture(ModelFilter):
     DEFAULT_CHOICE = Choice(POINTS, "")
+    MAY_REFINE_AUTOMATICALLY = True
 
     def __init__(self) -> None:
         ModelFilter.__init__(self)
@@ -313,9 +262,6 @@ class Texture(ModelFilter):
         if name == "EffectiveTimeStep":
             return _core.find_time_step(self.MODEL, self.settings)
         return ModelFilter.find_number(self, name)
-
-    def may_refine_automatically(self) -> bool:
-        return True
 
     def find_refinement(self, mean: float) -> tuple[float, str]:
         if self.own["RefineTo"] != -1.0:

@@ -20,33 +20,16 @@ from vtkmodules.vtkCommonCore import (
 from vtkmodules.vtkCommonDataModel import vtkBoundingBox, vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
 from .. import _core
-from ._normals import drop_normals
-from ._results import copy_component_names, make_array
-from ._surfaces import ABSENT, BETWEEN, GIVEN_CELL, Block, cell_flags, polygons_of, to_numpy
+from .._polydata import (
+    ABSENT, Cells, cell_flags, copy_component_names, drop_normals, make_array, places_of, read_cells, to_numpy,
+)
+from ._surfaces import BETWEEN, GIVEN_CELL, Block
 
 _DUPLICATE_POINT = 1  #: the bit in vtkGhostType
 _GHOSTS = vtkDataSetAttributes.GhostArrayName()
 _DEFAULT_TOLERANCE = 1e-6  #: in diagonals of the bounding box of all pieces
 _REACH = 3.0  #: in tolerances: what a point matches depends on points within it (PointMatching.h)
 _LARGE = 16  #: the most corners of cells that are sorted as one array, padded to the largest
-
-
-@dataclass
-class Cells:
-    """Polygons and strips of a piece, polygons first."""
-
-    corners: NDArray[np.int64]
-    offsets: NDArray[np.int64]
-    is_strip: NDArray[np.bool_]
-    is_absent: NDArray[np.bool_]  #: a ghost or hidden
-    first: int  #: the number of vertices and lines, which come before
-
-    @property
-    def count(self) -> int:
-        return len(self.is_strip)
-
-    def rows(self) -> Iterator[NDArray[np.int64]]:
-        return (self.corners[self.offsets[c]:self.offsets[c + 1]] for c in range(self.count))
 
 
 @dataclass(eq=False)
@@ -56,6 +39,7 @@ class Piece:
     block: Block
     places: NDArray[np.float64]
     cells: Cells
+    is_absent: NDArray[np.bool_]  #: per polygon and strip: a ghost or hidden
     first: int  #: the row of its first point among those of all pieces
     points: NDArray[np.int64]  #: per point, the surface's point
     originals: NDArray[np.int64]  #: per polygon and strip, the surface's cell, or -1
@@ -82,8 +66,9 @@ def stitch_pieces(
     for block in blocks:
         first = pieces[-1].rows.stop if pieces else 0
         nothing = np.empty(0, dtype=np.int64)
-        places, cells = _read_places(block.input), _read_cells(block.input)
-        pieces.append(Piece(block, places, cells, first, nothing, nothing))
+        cells, flags = read_cells(block.input), cell_flags(block.input, of_piece=True)
+        absent = (np.zeros(cells.count, dtype=bool) if flags is None else (flags[cells.first:] & ABSENT) != 0)
+        pieces.append(Piece(block, places_of(block.input), cells, absent, first, nothing, nothing))
     found = [_global_ids(piece.block.input) for piece in pieces]
     given = [ids for ids in found if ids is not None]
     by_id = len(given) == len(found)
@@ -95,12 +80,6 @@ def stitch_pieces(
     return [_stitch(by_surface[number], owners, numbers, names, attributes) for number in sorted(by_surface)]
 
 
-def _read_places(data: Any) -> NDArray[np.float64]:
-    if data.GetNumberOfPoints() == 0:
-        return np.empty((0, 3))
-    return to_numpy(data.GetPoints().GetData()).astype(np.float64, order="C")
-
-
 def _global_ids(data: Any) -> NDArray[np.int64] | None:
     if data.GetNumberOfPoints() == 0:
         return np.empty(0, dtype=np.int64)
@@ -108,17 +87,6 @@ def _global_ids(data: Any) -> NDArray[np.int64] | None:
     if ids is None or ids.GetNumberOfComponents() != 1 or ids.GetNumberOfTuples() != data.GetNumberOfPoints():
         return None
     return to_numpy(ids).astype(np.int64)
-
-
-def _read_cells(data: Any) -> Cells:
-    parts = [polygons_of(data.GetPolys()), polygons_of(data.GetStrips())]
-    (polygons, of_polygons), (strips, of_strips) = parts
-    first = data.GetNumberOfVerts() + data.GetNumberOfLines()
-    flags = cell_flags(data, of_piece=True)
-    is_strip = np.repeat([False, True], [len(of_polygons) - 1, len(of_strips) - 1])
-    absent = np.zeros(len(is_strip), dtype=bool) if flags is None else (flags[first:] & ABSENT) != 0
-    return Cells(np.append(polygons, strips), np.append(of_polygons, of_strips[1:] + len(polygons)), is_strip,
-                 absent, first)
 
 
 # Points ----------------------------------------------------------------------------------------
@@ -166,22 +134,17 @@ def _match(pieces: list[Piece], ids: NDArray[np.int64] | None, tolerance: float)
 def _flags(piece: Piece) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Which points are open, and which are copies, as in PointMatching.h."""
     cells, count = piece.cells, len(piece.places)
-    owner = np.repeat(np.arange(cells.count), np.diff(cells.offsets))
     is_bad = (cells.corners < 0) | (cells.corners >= count)  # an error, which is reported later
-    kept = ~cells.is_absent
-    kept[owner[is_bad]] = False
+    kept = ~piece.is_absent
+    kept[cells.owners[is_bad]] = False
     used = np.zeros(count, dtype=bool)
-    used[cells.corners[kept[owner]]] = True
-    following = np.roll(cells.corners, -1)
-    full = np.flatnonzero(np.diff(cells.offsets))
-    following[cells.offsets[full + 1] - 1] = cells.corners[cells.offsets[full]]
-    of_polygons = (kept & ~cells.is_strip)[owner]
-    edges = [np.stack([cells.corners, following], axis=1)[of_polygons]]
-    for strip_number in np.flatnonzero(kept & cells.is_strip):
-        strip = cells.corners[cells.offsets[strip_number]:cells.offsets[strip_number + 1]]
-        triangles = np.stack([strip[:-2], strip[1:-1], strip[2:]], axis=1)
-        edges.append(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]))
-    ends = np.sort(np.vstack(edges), axis=1)
+    used[cells.corners[kept[cells.owners]]] = True
+    corners, offsets, owners = cells.without_strips()
+    following = np.roll(corners, -1)
+    full = np.flatnonzero(np.diff(offsets))
+    following[offsets[full + 1] - 1] = corners[offsets[full]]
+    edges = np.stack([corners, following], axis=1)[np.repeat(kept[owners - cells.first], np.diff(offsets))]
+    ends = np.sort(edges, axis=1)
     keys, uses = np.unique(ends[:, 0] * count + ends[:, 1], return_counts=True)
     on_edge = np.zeros(count, dtype=bool)
     for side in np.divmod(keys[uses == 1], max(1, count)):
@@ -210,9 +173,8 @@ def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.
     places = np.concatenate([piece.places for piece in pieces])[of_pieces]
     with_points = [piece for piece in pieces if len(piece.places)]
     is_double = any(piece.block.input.GetPoints().GetDataType() == VTK_DOUBLE for piece in with_points)
-    points = vtkPoints()
-    points.SetData(make_array("Points", places.astype(np.float64 if is_double else np.float32)))
-    surface.SetPoints(points)
+    surface.SetPoints(vtkPoints())
+    surface.GetPoints().SetData(make_array("Points", places.astype(np.float64 if is_double else np.float32)))
     _merge([(piece.block.input.GetPointData(), 0, len(piece.places)) for piece in with_points],
            of_pieces, names, attributes, surface.GetPointData())
     surface.GetPointData().SetGlobalIds(make_array("surface diffusion point id", numbers[sources]))
@@ -240,18 +202,18 @@ def _stitch_cells(pieces: list[Piece], surface: Any) -> NDArray[np.int64]:
         sizes.append(np.diff(piece.cells.offsets))
     everything = Cells(
         np.concatenate(corners), np.append(0, np.cumsum(np.concatenate(sizes))),
-        np.concatenate([piece.cells.is_strip for piece in pieces]),
-        np.concatenate([piece.cells.is_absent for piece in pieces]), 0)
+        np.concatenate([piece.cells.is_strip for piece in pieces]))
+    is_absent = np.concatenate([piece.is_absent for piece in pieces])
     order = _sort_cells(everything, _cell_ids(pieces))
-    order = order[~everything.is_absent[order]]
+    order = order[~is_absent[order]]
     original = np.full(everything.count, -1)
     original[order] = np.arange(len(order))
-    if everything.is_absent.any():  # a ghost gets the results of the cell with the same corners
+    if is_absent.any():  # a ghost gets the results of the cell with the same corners
         known: dict[tuple[int, ...], int] = {}
-        rows = list(everything.rows())
+        rows = np.split(everything.corners, everything.offsets[1:-1])
         for number, cell in enumerate(order):
             known.setdefault(tuple(sorted(rows[cell])), number)
-        for cell in np.flatnonzero(everything.is_absent):
+        for cell in np.flatnonzero(is_absent):
             original[cell] = known.get(tuple(sorted(rows[cell])), -1)
     begin = 0
     for piece in pieces:
@@ -285,7 +247,7 @@ def _sort_cells(cells: Cells, ids: NDArray[np.int64]) -> NDArray[np.int64]:
     width = int(sizes.max(initial=0))
     if width > _LARGE:
         keys = [(strip, number, tuple(row.tolist())) for strip, number, row in
-                zip(cells.is_strip.tolist(), ids.tolist(), cells.rows())]
+                zip(cells.is_strip.tolist(), ids.tolist(), np.split(cells.corners, cells.offsets[1:-1]))]
         return np.array(sorted(range(len(keys)), key=keys.__getitem__), dtype=np.int64)
     padded = np.full((cells.count, width), -2)  # a cell comes before longer ones that begin with its points
     padded[np.arange(width) < sizes[:, None]] = cells.corners

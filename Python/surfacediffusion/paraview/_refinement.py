@@ -8,15 +8,11 @@ from __future__ import annotations
 from typing import Any, Callable
 
 import numpy as np
-from numpy.typing import NDArray
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import VTK_FLOAT, vtkDataArray, vtkIdTypeArray, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkPolyData
 
 from .. import _core
-from .._refinement import interpolate_points
-from ._results import copy_component_names, make_array
-from ._surfaces import BETWEEN, GIVEN_CELL, Block, Shapes, to_numpy
+from .._polydata import make_array, refined_polydata, to_numpy
+from ._surfaces import BETWEEN, GIVEN_CELL, Block, Shapes
 
 
 class Refinement:
@@ -44,7 +40,8 @@ class Refinement:
             before = block.input
             self._before.append((block, before))
             if refined is not None and len(refined["parents"]):
-                block.input = _make_surface(before, refined, rules)
+                block.input = refined_polydata(before, refined["points"], refined["triangles"],
+                                               refined["faces"].ravel(), refined["parents"], rules)
                 self.triangles += len(refined["triangles"])
                 block.output.ShallowCopy(block.input)
                 given = to_numpy(block.input.GetCellData().GetArray("vtkOriginalCellIds"))
@@ -75,63 +72,3 @@ class Refinement:
         """Make the outputs copies of the inputs that were replaced."""
         for block, before in self._before:
             block.output.ShallowCopy(before)
-
-
-def _make_surface(given: Any, refined: dict[str, Any], rules: dict[str, str]) -> Any:
-    parents = refined["parents"]
-    surface = vtkPolyData()
-    single = given.GetPoints().GetDataType() == VTK_FLOAT
-    points = vtkPoints()
-    points.SetData(make_array("Points", refined["points"].astype(np.float32 if single else np.float64)))
-    surface.SetPoints(points)
-    surface.SetVerts(given.GetVerts())
-    surface.SetLines(given.GetLines())
-    triangles = refined["triangles"].astype(np.int64)
-    polygons = vtkCellArray()
-    polygons.SetData(make_array("", 3 * np.arange(len(triangles) + 1)), make_array("", triangles.ravel()))
-    surface.SetPolys(polygons)
-    surface.GetFieldData().ShallowCopy(given.GetFieldData())
-    _copy_arrays(given.GetPointData(), surface.GetPointData(), given.GetNumberOfPoints(),
-                 lambda values, name: interpolate_points(values, parents, rules.get(name or "")),
-                 parents.min(axis=1))
-    others = given.GetNumberOfVerts() + given.GetNumberOfLines()
-    ids = np.concatenate([np.arange(others), refined["faces"].ravel()]).astype(np.int64)
-    _copy_arrays(given.GetCellData(), surface.GetCellData(), given.GetNumberOfCells(),
-                 lambda values, _: values[ids], ids)
-    surface.GetCellData().AddArray(make_array("vtkOriginalCellIds", ids, vtkIdTypeArray))
-    return surface
-
-
-def _copy_arrays(
-    given: Any, made: Any, count: int, make: Callable[[NDArray[Any], str | None], NDArray[Any]],
-    rows: NDArray[Any]
-) -> None:
-    """Add the arrays of `given` with a tuple for each of `count` points or cells, but global ids, and keep
-    their roles. make: the values from those of an array of a name. rows: of arrays that are no numbers, the
-    tuples to copy; those of points come after all that there are."""
-    for number in range(given.GetNumberOfArrays()):
-        array, role = given.GetAbstractArray(number), given.IsArrayAnAttribute(number)
-        if role == vtkDataSetAttributes.GLOBALIDS or array.GetNumberOfTuples() != count:
-            continue
-        new = array.NewInstance()
-        if isinstance(array, vtkDataArray):
-            new.DeepCopy(numpy_to_vtk(make(to_numpy(array), array.GetName())))
-        else:
-            _copy_tuples(array, new, rows, keeps=given.IsA("vtkPointData"))
-        new.SetName(array.GetName())
-        copy_component_names(array, new)
-        added = made.AddArray(new)
-        if role >= 0:
-            made.SetActiveAttribute(added, role)
-
-
-def _copy_tuples(array: Any, new: Any, rows: NDArray[Any], keeps: bool) -> None:
-    """Copy tuples of an array of texts and the like. keeps: all tuples come first, and a row may be a new
-    one."""
-    new.SetNumberOfComponents(array.GetNumberOfComponents())
-    count = array.GetNumberOfTuples() if keeps else 0
-    new.SetNumberOfTuples(count + len(rows))
-    if keeps:
-        new.InsertTuples(0, count, 0, array)
-    for i, row in enumerate(rows.tolist()):
-        new.InsertTuple(count + i, row, new if keeps else array)
