@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The functions on the coarse and odd surfaces of Testing/Surfaces, beside dense linear algebra."""
 
+import importlib.util
 import inspect
 import pathlib
 import unittest
@@ -18,9 +19,11 @@ try:
 except ImportError:
     of_meshes = None
 
-#: Functions without a surface among their arguments.
+#: Functions without a surface among their arguments, and those that need scipy where there is none.
 OF_OTHERS = {"estimate_fwhm_img", "smooth_img", "get_number_of_threads", "set_number_of_threads", "sphere",
              "on_faces", "on_points"}
+if not importlib.util.find_spec("scipy"):
+    OF_OTHERS |= {"mass_matrix", "stiffness_matrix", "gradient_matrix", "distances"}
 #: Where noise belongs to coordinates.
 RANDOM = {"random_field", "surrogates", "segment", "turing_texture", "turing_texture_steps"}
 #: Of functions that iterate until a tolerance, relative to the largest value.
@@ -64,9 +67,9 @@ def turn(points):
 
 def arguments(function, name, values, vectors, length):
     """No more than a function must have."""
-    given = {"values": values, "times": values, "vectors": vectors, "residuals": np.outer(values, [1, 2, -3]) ** 2, "sources": 0,
-             "wavelength": length, "wavelengths": [length, 3 * length], "height": 0.03 * length,
-             "length": length, "fwhm": length, "n": 3}
+    given = {"values": values, "times": values, "vectors": vectors, "sources": 0, "n": 3,
+             "residuals": np.outer(values, [1, 2, -3]) ** 2, "height": 0.03 * length, "length": length,
+             "wavelength": length, "wavelengths": [length, 3 * length], "fwhm": length}
     more = {"heat": ["fwhm"], "heat_steps": ["fwhm"], "random_field": ["fwhm"], "segment": ["values"]}
     parameters = [*inspect.signature(function).parameters.values()][1:]
     found = {parameter.name: given[parameter.name] for parameter in parameters
@@ -121,7 +124,8 @@ class CoarseSurfaces(unittest.TestCase):
                      if inspect.isfunction(getattr(sd, name)) and name not in OF_OTHERS}
         for _, points, triangles, values in self.each():
             vectors, length = self.random.normal(size=points.shape), 0.3 * np.ptp(points, axis=0).max()
-            surfaces = [(sd.Surface(points, triangles), vectors), (sd.Surface(turn(points), triangles), turn(vectors))]
+            surfaces = [(sd.Surface(points, triangles), vectors),
+                        (sd.Surface(turn(points), triangles), turn(vectors))]
             for name, function in functions.items():
                 with self.subTest(function=name):
                     found = []
@@ -159,10 +163,13 @@ class CoarseSurfaces(unittest.TestCase):
         angles, one = 2 * np.pi * np.arange(count) / count, np.arange(count)
         rim = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
         fan = (np.vstack([[[0, 0, 0]], rim]), np.column_stack([0 * one, 1 + one, 1 + (one + 1) % count]))
-        book = (np.vstack([[[0, 0, -0.5], [0, 0, 0.5]], rim]), np.column_stack([0 * one, 0 * one + 1, 2 + one]))
+        book = (np.vstack([[[0, 0, -0.5], [0, 0, 0.5]], rim]),
+                np.column_stack([0 * one, 0 * one + 1, 2 + one]))
         for hub, (points, triangles) in ((0, fan), (2, book)):
             surface = sd.Surface(points, triangles)
-            masses = sd.mass_matrix(surface).diagonal()
+            sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
+            areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 6.0
+            masses = np.bincount(triangles.ravel(), np.repeat(areas, 3))
             values = self.random.normal(size=len(points))
             found = sd.heat(surface, values, fwhm=0.2)
             self.assertLess(abs(masses @ (found - values)), 1e-12 * (masses @ np.abs(values)))
