@@ -25,7 +25,7 @@
  *   nearest points of the surface, inside triangles, too. MaximumDistance leaves out far ones, and
  *   hidden points have no value; or
  * - without an input on port 1, those of the data (input array 0) that are neither NaN nor masked.
- *   A cell has its value in the middle of its largest triangle.
+ *   A cell has its value in its middle.
  *
  * Several values at one place, up to about 1e-4 of an edge, count as their weighted mean; a warning
  * reports it if they differ. What differs at one place is noise, unless most places with repeats have

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -151,19 +150,25 @@ private:
   std::vector<Index> Before; ///< per point: that before it at the same vertex
 };
 
-/// Of the cells that were cut from one, the one that the middle of that lies in has it as its
-/// place, and the vertices of the others are -1.
-void MergePlaces(const Surface& surface, const Fields& fields, std::vector<SurfacePoint>& places)
+/// The middle of each cell, whichever way polygons are cut. Of the cells that were cut from one, the one
+/// that the middle of that lies in has it as its place; the vertices of others and of cells without a
+/// triangle are -1.
+std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& fields)
 {
+  constexpr double equal = 1e-9; // round-off must not choose
   struct GivenCell
   {
     Eigen::RowVector3d Moment = Eigen::RowVector3d::Zero();
     double Area = 0.0;
+    Index Triangles = 0;
     double Inside = -std::numeric_limits<double>::infinity(); ///< the least coordinate
     std::size_t Cell = 0;
     SurfacePoint Place;
   };
-  std::map<Index, GivenCell> givenCells;
+  const std::vector<Index>& numbers = fields.GivenCells;
+  std::vector<GivenCell> givenCells(static_cast<std::size_t>(numbers.empty()
+      ? fields.NumberOfCells
+      : *std::max_element(numbers.begin(), numbers.end()) + 1));
   const TriangleMesh& mesh = surface.InputMesh();
   const auto cellOf = [&](Index t)
   {
@@ -171,6 +176,8 @@ void MergePlaces(const Surface& surface, const Fields& fields, std::vector<Surfa
     return static_cast<std::size_t>(
       fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))]);
   };
+  const auto givenOf = [&](std::size_t cell) -> GivenCell&
+  { return givenCells[numbers.empty() ? cell : static_cast<std::size_t>(numbers[cell])]; };
   const auto corner = [&](Index t, int a) -> Eigen::RowVector3d
   {
     const auto vertex = static_cast<std::size_t>(mesh.TriangleVertices()(t, a));
@@ -178,71 +185,48 @@ void MergePlaces(const Surface& surface, const Fields& fields, std::vector<Surfa
   };
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    GivenCell& given = givenCells[fields.GivenCells[cellOf(t)]];
+    GivenCell& given = givenOf(cellOf(t));
     const double area = mesh.Shapes()[static_cast<std::size_t>(t)].Area();
     given.Moment += area / 3.0 * (corner(t, 0) + corner(t, 1) + corner(t, 2));
     given.Area += area;
+    ++given.Triangles;
   }
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    GivenCell& given = givenCells[fields.GivenCells[cellOf(t)]];
-    Eigen::Matrix<double, 3, 2> sides;
-    sides.col(0) = (corner(t, 1) - corner(t, 0)).transpose();
-    sides.col(1) = (corner(t, 2) - corner(t, 0)).transpose();
-    const Eigen::Vector3d offset = (given.Moment / given.Area - corner(t, 0)).transpose();
-    const Eigen::Vector2d x = (sides.transpose() * sides).ldlt().solve(sides.transpose() * offset);
-    const Eigen::Array3d coordinates(1.0 - x.sum(), x[0], x[1]);
-    if (coordinates.minCoeff() > given.Inside)
+    const std::size_t cell = cellOf(t);
+    GivenCell& given = givenOf(cell);
+    Eigen::Array3d coordinates = Eigen::Array3d::Constant(1.0 / 3.0);
+    if (given.Triangles > 1)
+    {
+      Eigen::Matrix<double, 3, 2> sides;
+      sides.col(0) = (corner(t, 1) - corner(t, 0)).transpose();
+      sides.col(1) = (corner(t, 2) - corner(t, 0)).transpose();
+      const Eigen::Vector3d offset = (given.Moment / given.Area - corner(t, 0)).transpose();
+      const Eigen::Vector2d x =
+        (sides.transpose() * sides).ldlt().solve(sides.transpose() * offset);
+      coordinates << 1.0 - x.sum(), x[0], x[1];
+    }
+    if (coordinates.minCoeff() > given.Inside + equal)
     {
       given.Inside = coordinates.minCoeff();
-      given.Cell = cellOf(t);
-      const Eigen::Array3d within = coordinates.max(0.0) / coordinates.max(0.0).sum();
+      given.Cell = cell;
+      const Eigen::Array3d within = coordinates.max(0.0);
       for (std::size_t a = 0; a < 3; ++a)
       {
         given.Place.Vertices[a] = mesh.TriangleVertices()(t, static_cast<Eigen::Index>(a));
-        given.Place.Coordinates[a] = within[static_cast<Eigen::Index>(a)];
+        given.Place.Coordinates[a] = within[static_cast<Eigen::Index>(a)] / within.sum();
       }
     }
   }
-  for (SurfacePoint& place : places)
-  {
-    place.Vertices.fill(-1);
-  }
-  for (const auto& [number, given] : givenCells)
-  {
-    places[given.Cell] = given.Place;
-  }
-}
-
-/// The middle of the largest triangle of each cell, of the first one among triangles of equal size,
-/// as those of a square; the vertices of cells without one are -1. See MergePlaces().
-std::vector<SurfacePoint> MiddlesOfCells(const Surface& surface, const Fields& fields)
-{
-  constexpr double equal = 1e-9; // round-off must not choose
-  const TriangleMesh& mesh = surface.InputMesh();
   SurfacePoint none;
   none.Vertices.fill(-1);
   std::vector<SurfacePoint> middles(static_cast<std::size_t>(fields.NumberOfCells), none);
-  std::vector<double> largest(middles.size(), -1.0);
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  for (const GivenCell& given : givenCells)
   {
-    const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
-    const auto cell =
-      static_cast<std::size_t>(fields.Cells[static_cast<std::size_t>(surface.InputTriangle(row))]);
-    const double area = mesh.Shapes()[static_cast<std::size_t>(t)].Area();
-    if (area > (1.0 + equal) * largest[cell])
+    if (std::isfinite(given.Inside))
     {
-      largest[cell] = area;
-      for (std::size_t a = 0; a < 3; ++a)
-      {
-        middles[cell].Vertices[a] = mesh.TriangleVertices()(t, static_cast<Eigen::Index>(a));
-        middles[cell].Coordinates[a] = 1.0 / 3.0;
-      }
+      middles[given.Cell] = given.Place;
     }
-  }
-  if (!fields.GivenCells.empty())
-  {
-    MergePlaces(surface, fields, middles);
   }
   return middles;
 }

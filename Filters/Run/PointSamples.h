@@ -55,8 +55,8 @@ struct KnownValues
 };
 
 /// The known values of the fields, divided by `unit`: of samples at their places, of points at
-/// their vertices, and of cells in the middle of their largest triangle, where linear functions
-/// have the value of CellTransfer::ToCells() on triangles. Equal values of merged points count
+/// their vertices, and of cells in their middle, where linear functions have the value of
+/// CellTransfer::ToCells() if cells are flat. Equal values of merged points count
 /// once. Fidelity factors are the weights; values of weight 0 do not count. cells: the cell of each
 /// row of surface.MakeTriangles(), of data on cells.
 KnownValues FindKnownValues(

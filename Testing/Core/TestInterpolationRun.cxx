@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <string>
 
 using namespace SurfaceDiffusion;
@@ -183,6 +184,45 @@ TEST(InterpolationRun, HoldsTheValuesOfTriangles)
   {
     EXPECT_NEAR(solution.Result(t, 0), fields.Data.Values(t, 0), 1e-9);
   }
+}
+
+TEST(InterpolationRun, HoldsLinearFunctionsOnPolygonsHoweverTheyAreCut)
+{
+  TestSurface s{ Points(36, 3), Triangles(50, 3) };
+  Fields fields;
+  fields.Data.OnCells = true;
+  fields.NumberOfCells = 25;
+  fields.Data.Values.resize(25, 1);
+  for (Index i = 0; i < 36; ++i)
+  {
+    const double y = i % 6 * (1.0 + 0.3 * (i / 6));
+    s.Vertices.row(i) << i / 6, y, 0.5 * y;
+  }
+  for (Index c = 0; c < 25; ++c)
+  {
+    const Index a = 6 * (c / 5) + c % 5;
+    const bool turned = c % 2 == 1;
+    s.Faces.row(2 * c) << a, a + 6, (turned ? a + 1 : a + 7);
+    s.Faces.row(2 * c + 1) << (turned ? a + 6 : a), a + 7, a + 1;
+    fields.Cells.insert(fields.Cells.end(), 2, c);
+    Eigen::RowVector3d moment = Eigen::RowVector3d::Zero();
+    double area = 0.0;
+    for (Index t = 2 * c; t < 2 * c + 2; ++t)
+    {
+      const Points p = s.Vertices(s.Faces.row(t), Eigen::all);
+      const double size = (p.row(1) - p.row(0)).cross(p.row(2) - p.row(0)).norm();
+      moment += size * p.colwise().mean();
+      area += size;
+    }
+    fields.Data.Values(c, 0) = moment[0] / area + 2.0 * moment[1] / area;
+  }
+  InterpolationSettings settings = Exact();
+  settings.Boundary = RimCondition::Free;
+  const Values found = Fitted(s, fields, settings).Result;
+  EXPECT_LT((found - fields.Data.Values).cwiseAbs().maxCoeff(), 1e-8);
+  fields.GivenCells.resize(25); // as if they had been cut
+  std::iota(fields.GivenCells.begin(), fields.GivenCells.end(), 0);
+  EXPECT_EQ(Fitted(s, fields, settings).Result, found);
 }
 
 TEST(InterpolationRun, WeighsTheValuesOfTrianglesByFactorsOfPointsToo)

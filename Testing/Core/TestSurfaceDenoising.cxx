@@ -7,6 +7,7 @@
 #include "Core/Geometry/TriangleOrientation.h"
 #include "Core/Geometry/VertexFans.h"
 #include "Core/Geometry/VertexNoise.h"
+#include "Hubs.h"
 #include "Interpolation.h"
 #include "Meshes.h"
 #include "NoisySurfaces.h"
@@ -503,6 +504,17 @@ TEST(SurfaceDenoising, DetailsOfSmoothSurfacesAreNoNoise)
   {
     const TriangleMesh mesh(surface.Vertices, surface.Faces);
     EXPECT_EQ(EstimateVertexNoise(mesh, GatherVertices(mesh, surface.Vertices)), 0.0);
+  }
+}
+
+TEST(SurfaceDenoising, FewVerticesAmongManyTellNoNoise)
+{
+  for (const Index count : { 250, 300, 1000 })
+  {
+    DenoisingReport report;
+    Denoised(TrianglesAtAnEdge(count), DenoisingSettings(), {}, &report);
+    EXPECT_EQ(report.MaximumDisplacement, 0.0);
+    EXPECT_EQ(report.CoarseParts, 1);
   }
 }
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The functions on the coarse and odd surfaces of Testing/Surfaces, beside dense linear algebra."""
 
+import importlib.util
+import inspect
 import pathlib
 import unittest
 import warnings
@@ -9,6 +11,23 @@ import warnings
 import numpy as np
 
 import surfacediffusion as sd
+
+try:
+    import pyvista
+
+    import surfacediffusion.pyvista as of_meshes
+except ImportError:
+    of_meshes = None
+
+#: Functions without a surface among their arguments, and those that need scipy where there is none.
+OF_OTHERS = {"estimate_fwhm_img", "smooth_img", "get_number_of_threads", "set_number_of_threads", "sphere",
+             "on_faces", "on_points"}
+if not importlib.util.find_spec("scipy"):
+    OF_OTHERS |= {"mass_matrix", "stiffness_matrix", "gradient_matrix", "distances"}
+#: Where noise belongs to coordinates.
+RANDOM = {"random_field", "surrogates", "segment", "turing_texture", "turing_texture_steps"}
+#: Of functions that iterate until a tolerance, relative to the largest value.
+TOLERANCES = dict.fromkeys(("intrinsic_tv", "intrinsic_tv_steps", "mumford_shah", "mumford_shah_steps"), 1e-3)
 
 
 def read_surfaces():
@@ -46,6 +65,35 @@ def turn(points):
     return points + np.sin(angle) * across + (1.0 - np.cos(angle)) * np.cross(axis, across)
 
 
+def arguments(function, name, values, vectors, length):
+    """No more than a function must have."""
+    given = {"values": values, "times": values, "vectors": vectors, "sources": 0, "n": 3,
+             "residuals": np.outer(values, [1, 2, -3]) ** 2, "height": 0.03 * length, "length": length,
+             "wavelength": length, "wavelengths": [length, 3 * length], "fwhm": length}
+    more = {"heat": ["fwhm"], "heat_steps": ["fwhm"], "random_field": ["fwhm"], "segment": ["values"]}
+    parameters = [*inspect.signature(function).parameters.values()][1:]
+    found = {parameter.name: given[parameter.name] for parameter in parameters
+             if parameter.default is parameter.empty or parameter.name in more.get(name, [])}
+    if name == "interpolate":
+        found["values"] = np.where(np.arange(len(values)) % 3 == 1, np.nan, values)
+    return {**found, **({"number_of_time_steps": 2} if name.endswith("_steps") else {})}
+
+
+def without_frame(result):
+    """What does not change with a rotation."""
+    if isinstance(result, sd.States):
+        result = [*result][-1]
+    for name in ("longest_edge", "heights", "speed", "variance", "pooled", "mean", "values"):
+        if not hasattr(result, "toarray") and not isinstance(result, np.ndarray):
+            result = getattr(result, name, result)
+    if isinstance(result, tuple):
+        result = result[0]
+    if hasattr(result, "toarray"):
+        return (result.T @ result).toarray()
+    result = np.asarray(result, float)
+    return np.linalg.norm(result, axis=1) if result.ndim == 2 and result.shape[1] == 3 else result
+
+
 class CoarseSurfaces(unittest.TestCase):
     def setUp(self):
         warnings.simplefilter("ignore")
@@ -56,6 +104,93 @@ class CoarseSurfaces(unittest.TestCase):
         for name, points, triangles in SURFACES:
             with self.subTest(surface=name):
                 yield name, points, triangles, self.random.normal(size=len(points))
+
+    def tried(self, call):
+        """Its result and whether it warned; None where one line says what is allowed."""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            try:
+                result = call()
+            except ValueError as error:
+                self.assertRegex(str(error), "^.*(allowed:|set ).*$")
+                return None, True
+        return result, bool(caught)
+
+    def assert_known(self, array, warned):
+        self.assertFalse(np.isnan(array).any() and not warned)
+
+    def test_all_functions_give_the_same_turned(self):
+        functions = {name: getattr(sd, name) for name in sd.__all__
+                     if inspect.isfunction(getattr(sd, name)) and name not in OF_OTHERS}
+        for _, points, triangles, values in self.each():
+            vectors, length = self.random.normal(size=points.shape), 0.3 * np.ptp(points, axis=0).max()
+            surfaces = [(sd.Surface(points, triangles), vectors),
+                        (sd.Surface(turn(points), triangles), turn(vectors))]
+            for name, function in functions.items():
+                with self.subTest(function=name):
+                    found = []
+                    for surface, turned in surfaces:
+                        keywords = arguments(function, name, values, turned, length)
+                        result, warned = self.tried(lambda: without_frame(function(surface, **keywords)))
+                        found.append(result)
+                        if result is not None:
+                            self.assert_known(result, warned)
+                    if name in RANDOM or found[0] is None:
+                        continue
+                    finite = np.isfinite(found[0])
+                    largest = np.abs(found[0][finite]).max(initial=0.0)
+                    np.testing.assert_allclose(found[1], found[0], rtol=0,
+                                               atol=TOLERANCES.get(name, 1e-6) * largest + 1e-12)
+
+    @unittest.skipUnless(of_meshes, "needs PyVista")
+    def test_functions_of_meshes_have_results(self):
+        for _, points, triangles, values in self.each():
+            length = 0.3 * np.ptp(points, axis=0).max()
+            for name in of_meshes.__all__:
+                with self.subTest(function=name):
+                    mesh = pyvista.PolyData.from_regular_faces(points, triangles)
+                    mesh["v"] = values
+                    given = arguments(getattr(sd, name), name, values, values, length)
+                    if given.pop("values", None) is not None:
+                        given["array"] = "v"
+                    result, warned = self.tried(lambda: getattr(of_meshes, name)(mesh, **given))
+                    for data in (result.point_data, result.cell_data) if result is not None else ():
+                        for array in data.values():
+                            self.assert_known(np.asarray(array, float), warned)
+
+    def test_hubs_of_20000_triangles(self):
+        count = 20000
+        angles, one = 2 * np.pi * np.arange(count) / count, np.arange(count)
+        rim = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+        fan = (np.vstack([[[0, 0, 0]], rim]), np.column_stack([0 * one, 1 + one, 1 + (one + 1) % count]))
+        book = (np.vstack([[[0, 0, -0.5], [0, 0, 0.5]], rim]),
+                np.column_stack([0 * one, 0 * one + 1, 2 + one]))
+        for hub, (points, triangles) in ((0, fan), (2, book)):
+            surface = sd.Surface(points, triangles)
+            sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
+            areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 6.0
+            masses = np.bincount(triangles.ravel(), np.repeat(areas, 3))
+            values = self.random.normal(size=len(points))
+            found = sd.heat(surface, values, fwhm=0.2)
+            self.assertLess(abs(masses @ (found - values)), 1e-12 * (masses @ np.abs(values)))
+            distances = sd.distance(surface, 5)
+            if hub == 0:
+                self.assertAlmostEqual(distances[hub], 1.0, delta=1e-12)
+            else:  # over the edge
+                np.testing.assert_allclose(np.delete(distances, [0, 1, 5]), 2.0, atol=1e-12)
+            self.assertLess(np.abs(sd.curvature(surface).mean).max(), 1e-11)
+
+    def test_2000_parts_are_alone(self):
+        ball, count = sd.sphere(0), 2000
+        shifts = 3.0 * np.arange(count)[:, None] * [1.0, 0.0, 0.0]
+        points = (ball.points + shifts[:, None]).reshape(-1, 3)
+        triangles = (ball.triangles + ball.n_points * np.arange(count)[:, None, None]).reshape(-1, 3)
+        values = self.random.normal(size=ball.n_points)
+        surface, all_values = sd.Surface(points, triangles), np.tile(values, count)
+        for name, extra in (("heat", {"fwhm": 0.5}), ("laplacian", {}), ("interpolate", {})):
+            found = np.asarray(getattr(sd, name)(surface, all_values, **extra)).reshape(count, -1)
+            alone = np.asarray(getattr(sd, name)(ball, values, **extra))
+            np.testing.assert_allclose(found, np.tile(alone, (count, 1)), atol=1e-6)
 
     def test_heat_takes_the_step_of_dense_matrices(self):
         for _, points, triangles, values in self.each():

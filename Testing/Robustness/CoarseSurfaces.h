@@ -3,6 +3,7 @@
 #pragma once
 
 #include "BadMeshes.h"
+#include "Hubs.h"
 
 #include <fstream>
 #include <limits>
@@ -66,8 +67,10 @@ inline Surface Row(const Surface& part, Index count, double growth = 1.0)
 inline std::vector<NamedSurface> CoarseSurfaces()
 {
   std::vector<NamedSurface> surfaces = SmallCoarseSurfaces();
-  surfaces.push_back({ "ManyParts", Row(Icosphere(0), 200) });
+  surfaces.push_back({ "ManyParts", Row(Icosphere(0), 300) });
   surfaces.push_back({ "PartsOfManySizes", Row(Icosphere(1), 4, 10.0) });
+  surfaces.push_back({ "Fan", TrianglesAtAVertex(300) });
+  surfaces.push_back({ "Book", TrianglesAtAnEdge(300) });
   return surfaces;
 }
 

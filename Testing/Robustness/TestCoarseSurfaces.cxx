@@ -169,7 +169,7 @@ TEST(CoarseSurfaces, AreTakenByEveryKind)
 
 TEST(CoarseSurfaces, KeepConstants)
 {
-  ForEachKind(SmallCoarseSurfaces(),
+  ForEachKind(CoarseSurfaces(),
     [](const FilterKind& kind, vtkPolyData* given)
     {
       const std::string name = DiffusedArray(kind);
@@ -212,15 +212,18 @@ TEST(CoarseSurfaces, GiveTheSameTurned)
     "Segmentation", "SegmentationDefaults", "SegmentationOfCells", "SegmentationOfThree" };
   // Relative to the largest value, where results depend on round-off by more than that.
   const std::map<std::string, double> tolerances = {
-    // As measured. Of diagonals of equal length, as on the washers, either is Delaunay, and errors
-    // of the methods depend on it; what ArrivalTime differs by on LongHull is not explained.
-    { "ArrivalTime", 0.05 }, { "DistanceEikonal", 0.05 }, { "DistanceHeat", 0.05 },
+    // Ten times what is measured: of edges of equal length, either is bisected first.
+    { "ArrivalTime", 0.01 }, { "DistanceEikonal", 1e-4 },
     // These iterations stop within their tolerances, the coarsest of all.
     { "TV", 1e-3 }, { "TVCrouzeixRaviart", 1e-3 }, { "MumfordShahWeighted", 1e-4 },
     { "TVChromaticity", 0.01 } // one step of a byte
   };
-  // Gradients of triangles depend on which of two diagonals of equal length is Delaunay.
-  const std::set<std::string> undetermined = { "MumfordShahDirect SquareWasher" };
+  // Of two diagonals of equal length, either is Delaunay: after a rotation of the square washer, others of
+  // its edges have the weight 0, and errors of the methods depend on that. Where the source of LongHull
+  // is, at faces of speeds from 1 to 3, the edges of the refined surface are too long for fronts, which
+  // are early by a fifth.
+  const std::set<std::string> undetermined = { "MumfordShahDirect SquareWasher",
+    "DistanceHeat SquareWasher", "DistanceEikonal SquareWasher", "ArrivalTime LongHull" };
   for (const NamedSurface& named : SmallCoarseSurfaces())
   {
     SCOPED_TRACE(named.Name);
@@ -295,7 +298,7 @@ TEST(CoarseSurfaces, HaveDistancesBetweenTheStraightLineAndTheWayAlongEdges)
 
 TEST(CoarseSurfaces, AreNotMovedWithoutNoiseOrSteps)
 {
-  for (const NamedSurface& named : SmallCoarseSurfaces())
+  for (const NamedSurface& named : CoarseSurfaces())
   {
     SCOPED_TRACE(named.Name);
     const auto surface = MakePolyData(named);

@@ -45,12 +45,20 @@ Values NormalTensors(const TriangleMesh& mesh, const Points& normals, const Para
   return tensors;
 }
 
+/// Of numbers of size 1
+constexpr double RoundOff = 1e-9;
+
+/// The main axis; zero where there is none, as at the corners of a cube.
 Eigen::RowVector3d MainNormal(const Values& tensors, Index i)
 {
   Eigen::Matrix3d tensor;
   tensor << tensors(i, 0), tensors(i, 1), tensors(i, 2), tensors(i, 1), tensors(i, 3),
     tensors(i, 4), tensors(i, 2), tensors(i, 4), tensors(i, 5);
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvectors().col(2).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor);
+  const Eigen::Vector3d values = solver.eigenvalues();
+  return values[2] - values[1] > RoundOff * values[2]
+    ? Eigen::RowVector3d(solver.eigenvectors().col(2).transpose())
+    : Eigen::RowVector3d::Zero();
 }
 
 Points TriangleNormals(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
@@ -72,7 +80,8 @@ struct ShapeOperator
   double XX, XY, YY;
 };
 
-/// The derivative of the normal, made symmetric. vertexNormals may have any sign.
+/// The derivative of the normal, made symmetric. vertexNormals may have any sign; zero where one has no
+/// side of the triangle.
 ShapeOperator ShapeOperatorOf(const TriangleMesh& mesh, Index t,
   const Eigen::Matrix<double, 3, 2>& axes, const Eigen::RowVector3d& triangleNormal,
   const Points& vertexNormals)
@@ -81,7 +90,12 @@ ShapeOperator ShapeOperatorOf(const TriangleMesh& mesh, Index t,
   for (int a = 0; a < 3; ++a)
   {
     const Eigen::RowVector3d n = vertexNormals.row(mesh.TriangleVertices()(t, a));
-    const double side = n.dot(triangleNormal) < 0.0 ? -1.0 : 1.0;
+    const double cosine = n.dot(triangleNormal);
+    if (std::abs(cosine) < RoundOff)
+    {
+      return { 0.0, 0.0, 0.0 };
+    }
+    const double side = cosine < 0.0 ? -1.0 : 1.0;
     tangential[0][a] = side * n.dot(axes.col(0));
     tangential[1][a] = side * n.dot(axes.col(1));
   }
@@ -111,7 +125,6 @@ PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
     [&](Index i) { vertexNormals.row(i) = MainNormal(tensors, i); });
 
   // On a surface of about unit size curvatures have round-off, and at their scale that of coordinates.
-  constexpr double roundOff = 1e-9;
   constexpr double factor = 32.0;
   const double rounding = factor * RoundingOfCoordinates(points) / mesh.LengthUnit();
   principal.MinimumCurvature.resize(mesh.NumberOfTriangles(), 2);
@@ -128,7 +141,7 @@ PrincipalDirections FindPrincipalDirections(const Assembler& assembler,
       principal.Difference[t] = std::min(std::abs(sum), difference);
       Eigen::RowVector2d direction = Eigen::RowVector2d::Zero();
       const double square = std::max(mesh.Shapes()[t].Area(), fwhm * fwhm);
-      if (principal.Difference[t] > std::max(roundOff, rounding / square))
+      if (principal.Difference[t] > std::max(RoundOff, rounding / square))
       {
         const double angle =
           0.5 * std::atan2(2.0 * s.XY, s.XX - s.YY) + (sum > 0.0 ? 0.5 * std::acos(-1.0) : 0.0);

@@ -32,7 +32,7 @@ constexpr double FarDisplacement = 10.0;
 constexpr double FlatDistance = 0.01;
 constexpr double LargestFlatShare = 0.25;
 
-/// correlated: what was found of it.
+/// correlated: what was found of it. NaN where nothing can be told.
 double EstimateNoise(const TriangleMesh& mesh, const Points& points,
   const CorrelatedNoise& correlated, const ParallelFor& parallel)
 {
@@ -147,16 +147,17 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   const double noise = given > 0.0 ? given : EstimateNoise(mesh, points, correlated, parallel);
   progress.Report(0.05);
   DenoisedPart result;
-  result.NoiseLevel = noise * unit;
   result.Displacements = Points::Zero(rows, 3);
-  if (!(noise > SmallestNoise * mesh.MeanEdgeLength()))
+  const bool isFound = noise > SmallestNoise * mesh.MeanEdgeLength();
+  const bool isEstimated = !(given > 0.0 || correlated.Level > 0.0);
+  if (std::isnan(noise) || (isFound && isEstimated && HasFlatFaces(mesh, points, noise)))
   {
+    result.IsCoarse = true;
     return result;
   }
-  if (!(given > 0.0 || correlated.Level > 0.0) && HasFlatFaces(mesh, points, noise))
+  result.NoiseLevel = noise * unit;
+  if (!isFound)
   {
-    result.NoiseLevel = 0.0;
-    result.IsCoarse = true;
     return result;
   }
   std::vector<char> isFixed;

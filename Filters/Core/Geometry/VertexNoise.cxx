@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace SurfaceDiffusion
 {
@@ -170,16 +171,19 @@ struct Deviation
 {
   double Sigma;
   double Tail;
+  bool IsOfEnough; ///< of the fraction of the vertices that must have one
 };
 
 /// Negative distances are left out.
 Deviation DeviationOf(std::vector<double>& distances)
 {
+  const double vertices = static_cast<double>(distances.size());
   distances.erase(std::remove_if(distances.begin(), distances.end(),
                     [](double distance) { return distance < 0.0; }),
     distances.end());
   return { QuantileOf(distances, NoiseFraction) / NoiseQuantile,
-    QuantileOf(distances, TailFraction) / TailQuantile };
+    QuantileOf(distances, TailFraction) / TailQuantile,
+    static_cast<double>(distances.size()) >= NoiseFraction * vertices };
 }
 
 /// Every so many vertices are used to have about `enough` of them.
@@ -241,6 +245,10 @@ double EstimateVertexNoise(
     MeasureDeviations(mesh, points, { 2, 3 }, StrideFor(mesh, EnoughVertices), parallel);
   const double two = deviations[0].Sigma;
   const double three = std::max(two, deviations[1].Sigma);
+  if (!deviations[0].IsOfEnough)
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   if (!(two > 0.0))
   {
     return 0.0;

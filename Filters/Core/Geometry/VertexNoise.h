@@ -32,7 +32,7 @@ double QuantileOf(std::vector<double>& values, double fraction);
 ///   sigma_2^2 (1 - R / (g - 1) - (1 - R0 / (g - 1)) (R / R0)^3),
 ///
 /// not below 0. For small R this extrapolates the variance to a neighbourhood of no size. It is 0
-/// from R0 on, and if no vertex is left.
+/// from R0 on, and NaN if less than 30 % of the vertices are left.
 ///
 /// points: per vertex of the mesh.
 double EstimateVertexNoise(
