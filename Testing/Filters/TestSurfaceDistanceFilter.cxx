@@ -542,7 +542,7 @@ TEST(DistanceFilter, WarnsAboutSourcesInAnotherUnit)
     filter->Update();
     ASSERT_EQ(messages.Warnings.size(), 1u);
     EXPECT_TRUE(Has(messages.Warnings[0],
-      "2 of 3 points of the sources are farther than 0.894427 from the surface, which is 8.94427 "
+      "points of the sources are farther than 0.894427 from the surface, which is 8.94427 "
       "large; median distance 60.5392")) // of (60, 35)
       << messages.Warnings[0];
     EXPECT_TRUE(Has(messages.Warnings[0], "; their unit or origin may be another"));
