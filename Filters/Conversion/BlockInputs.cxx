@@ -77,7 +77,11 @@ std::vector<BlockInput> BlockInputs::MakeOfPieces(const std::vector<InputFields>
       [&arrays = surfaces[b], &cells = this->Cells[b], decomposition = this->Decomposition.get()]
     {
       Fields read = ReadFields(arrays, cells);
-      read.MakeIds = [decomposition] { return decomposition->PointIds(); };
+      read.MakeIds = nullptr; // unless the pieces of all processes have ids
+      if (decomposition->HasIds())
+      {
+        read.MakeIds = [decomposition] { return decomposition->PointIds(); };
+      }
       return read;
     };
   }

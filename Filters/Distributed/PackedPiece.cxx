@@ -192,7 +192,11 @@ vtkSmartPointer<vtkPolyData> PackPiece(
   const std::vector<std::int64_t> made = identity.MakeIds(input);
   std::copy(made.begin(), made.end(), ids->GetPointer(0));
   packed->GetPointData()->AddArray(labels);
-  packed->GetPointData()->SetGlobalIds(ids);
+  packed->GetPointData()->AddArray(ids);
+  if (identity.IsById)
+  {
+    packed->GetPointData()->SetGlobalIds(ids);
+  }
   packed->GetFieldData()->AddArray(PackNames(PackedArrays::PointArrayNames, input->GetPointData()));
   packed->GetFieldData()->AddArray(PackNames(PackedArrays::CellArrayNames, input->GetCellData()));
   std::vector<unsigned char> flags = FindCellFlags(input);

@@ -36,7 +36,8 @@ public:
     return static_cast<Index>(this->Domain->NumberOfCopies());
   }
 
-  /// Per point a number that does not depend on the decomposition.
+  bool HasIds() const { return this->Identity.IsById; } ///< all processes have global ids of points
+  /// Per point its global id.
   std::vector<std::int64_t> PointIds() const { return this->Identity.MakeIds(this->Piece); }
 
   /// Give copies of points that other processes own what was written there: the arrays of `after`

@@ -55,14 +55,8 @@ std::vector<std::int64_t> PointIdentity::MakeIds(vtkPolyData* piece) const
   {
     return std::vector<std::int64_t>(ids->GetPointer(0), ids->GetPointer(0) + count);
   }
-  std::vector<std::int64_t> made = IdsOfPlaces(static_cast<std::size_t>(count),
+  return IdsOfPlaces(static_cast<std::size_t>(count),
     [&](std::size_t i, double* x) { piece->GetPoint(static_cast<vtkIdType>(i), x); });
-  for (const auto& [point, place] : this->Moved)
-  {
-    made[point] = IdsOfPlaces(
-      1, [&, &at = place](std::size_t, double* x) { std::copy_n(at.begin(), 3, x); })[0];
-  }
-  return made;
 }
 
 std::vector<PointIdentity> FindIdentity(
@@ -104,15 +98,10 @@ std::vector<PointIdentity> FindIdentity(
     {
       PointIdentity& identity = identities[piece - first];
       const vtkIdType point = points[i].Label - identity.FirstLabel;
-      const InterfacePoint& owner = points[owners[i]];
-      identity.Labels[point] = owner.Label;
+      identity.Labels[point] = points[owners[i]].Label;
       if (isShared[i])
       {
         identity.Shared.push_back(point);
-      }
-      if (!byId && owner.Label != points[i].Label)
-      {
-        identity.Moved.push_back({ point, owner.Coordinates });
       }
     }
   }

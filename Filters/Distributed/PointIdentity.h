@@ -37,13 +37,11 @@ struct PointIdentity
   std::vector<vtkIdType> Labels;
   vtkIdType FirstLabel = 0;
   bool IsById = false; ///< points were matched by their global ids
-  /// Points whose owners have other places, within the tolerance, and these.
-  std::vector<std::pair<vtkIdType, std::array<double, 3>>> Moved;
   std::vector<vtkIdType> Shared; ///< the points that are points of other pieces too, ascending
   std::vector<int> Neighbours; ///< the processes that may have such points, ascending
 
-  /// Per point of the piece a number that does not depend on the partition, for random numbers: the
-  /// global id, or a hash of the coordinates; see IdsOfPlaces().
+  /// Per point of the piece that owns itself a number that does not depend on the partition, which
+  /// orders the points: the global id, or a hash of the coordinates; see IdsOfPlaces().
   std::vector<std::int64_t> MakeIds(vtkPolyData* piece) const;
 };
 

@@ -152,6 +152,10 @@ void StitchedSurface::StitchPoints(vtkPolyData* surface)
     }
   }
   this->MergeArrays(sources, false, surface->GetPointData());
+  if (!surface->GetPointData()->GetGlobalIds())
+  {
+    surface->GetPointData()->RemoveArray(PackedArrays::PointIds); // of places, for the order alone
+  }
 }
 
 /// The cells of all pieces, with points of the surface, apart from ghost cells.

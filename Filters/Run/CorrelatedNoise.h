@@ -16,7 +16,7 @@ struct ScatteredValues;
 Sentence DescribeSmoothData(double width, double estimate, double deviation, const Sentence& next);
 
 /// The same of a column of values at points, in array units 1/unit, whose smooth fit leaves a deviation
-/// `estimate`. Empty if they are all equal.
+/// `estimate`. Empty if they are fewer than 200, or grow apart as a smooth function does.
 Sentence DescribeSmoothValues(
   const ScatteredValues& data, int column, double estimate, double unit, const Surface& surface);
 

@@ -6,6 +6,7 @@
 
 #include "Core/Foundation/DisjointSets.h"
 #include "Run/CellFields.h"
+#include "Run/FarPoints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -278,8 +279,12 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
   set.Given = found.Count + found.TooFar + found.Outside;
   if (maximumDistance == 0.0)
   {
-    set.Farness = DescribeFarPoints("points of the sources", found.MedianDistance,
-      DiagonalOf(surface.Points(), Reduction::Serial()));
+    Points places(static_cast<Eigen::Index>(found.Places.size()), 3);
+    for (std::size_t i = 0; i < found.Places.size(); ++i)
+    {
+      places.row(static_cast<Eigen::Index>(i)) = found.Places[i];
+    }
+    set.Farness = DescribeFarPoints("of the sources", places, found.Distances, surface);
   }
   for (const SourcePiece& piece : found.Pieces)
   {

@@ -3,7 +3,6 @@
 #include "Run/DistanceSources.h"
 
 #include "Core/Foundation/DisjointSets.h"
-#include "Core/Foundation/RobustRange.h"
 #include "Run/Located.h"
 #include "Run/Sentence.h"
 
@@ -89,7 +88,6 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     return place;
   };
   ProjectedSources found;
-  std::vector<double> distances;
   const std::vector<Index> labels = shapes.FindLabels();
   std::vector<char> isOnLine(labels.size(), 0);
   for (const auto& segment : shapes.Segments)
@@ -119,7 +117,8 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     }
     const auto row = static_cast<Index>(i);
     const Place place = find(shapes.Places.row(row));
-    distances.push_back(place.Distance);
+    found.Distances.push_back(place.Distance);
+    found.Places.push_back(shapes.Places.row(row));
     ++(place.Triangle >= 0 ? found.Count : (place.IsFar ? found.TooFar : found.Outside));
     if (place.Triangle >= 0)
     {
@@ -131,10 +130,8 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
   {
     progress.Report(static_cast<double>(labels.size() + s) / all);
     const std::array<Index, 2>& ends = shapes.Segments[s];
-    this->ProjectSegment(
-      shapes, ends, labels[static_cast<std::size_t>(ends[0])], find, found, distances);
+    this->ProjectSegment(shapes, ends, labels[static_cast<std::size_t>(ends[0])], find, found);
   }
-  found.MedianDistance = Median(distances);
   return found;
 }
 
@@ -142,8 +139,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
 /// pieces between those that are in one triangle. Where a line leaves a triangle, samples become
 /// denser.
 void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Index, 2> ends,
-  Index label, const Finder& findPlace, ProjectedSources& found,
-  std::vector<double>& distances) const
+  Index label, const Finder& findPlace, ProjectedSources& found) const
 {
   constexpr double samplesPerEdge = 4.0;
   constexpr double mostSamples = 65536.0;
@@ -164,7 +160,8 @@ void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Ind
   };
   std::vector<Part> parts;
   Place last = find(0.0);
-  distances.push_back(last.Distance);
+  found.Distances.push_back(last.Distance);
+  found.Places.push_back(a);
   for (int k = 0; k < samples; ++k)
   {
     const double from = static_cast<double>(k) / samples;
@@ -198,7 +195,8 @@ void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Ind
     }
     last = next;
   }
-  distances.push_back(last.Distance);
+  found.Distances.push_back(last.Distance);
+  found.Places.push_back(b);
   isFar = isFar || last.IsFar;
   ++(found.Pieces.size() > before ? found.Count : (isFar ? found.TooFar : found.Outside));
 }

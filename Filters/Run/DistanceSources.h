@@ -36,7 +36,8 @@ struct ProjectedSources
   Index Count = 0; ///< points, and segments, with a piece
   Index TooFar = 0; ///< without one: farther than the largest distance
   Index Outside = 0; ///< without one: nearest to triangles that take no part
-  double MedianDistance = 0.0; ///< of points, and ends of segments, from the surface
+  std::vector<double> Distances; ///< of points, and ends of segments, from the surface
+  std::vector<Eigen::RowVector3d> Places; ///< of the same
 };
 
 /// Finds the places of a surface that are nearest to points and lines. Those nearest to triangles
@@ -64,9 +65,8 @@ private:
 
   /// Finds the place that is nearest to a point.
   using Finder = std::function<Place(const Eigen::RowVector3d&)>;
-  /// Appends the distances of its ends.
   void ProjectSegment(const SourceShapes& shapes, std::array<Index, 2> ends, Index label,
-    const Finder& find, ProjectedSources& found, std::vector<double>& distances) const;
+    const Finder& find, ProjectedSources& found) const;
 
   SurfaceArrays Arrays; ///< whose triangles are those of MeshTriangles
   std::vector<Index> MeshTriangles; ///< per triangle, that of the mesh; -1: excluded

@@ -69,34 +69,41 @@ Shift FindShift(const Points& places, const Surface& surface)
   return best;
 }
 
-/// The warning; empty if no point is far.
-Sentence DescribeDistances(
-  const KnownValues& known, double median, double largest, const Surface& surface)
+} // namespace
+
+Sentence DescribeFarPoints(const char* kind, const Points& places,
+  const std::vector<double>& distances, const Surface& surface)
 {
   constexpr double edges = 5.0;
   constexpr double least = 0.02; // of the diagonal
   constexpr double most = 0.1;
+  constexpr double strange = 0.25;
   const double diagonal = DiagonalOf(surface.Points(), Reduction::Serial());
   const double edge = surface.Mesh().MeanEdgeLength() * surface.Mesh().LengthUnit();
   const double reach = std::min(std::max(edges * edge, least * diagonal), most * diagonal);
-  const std::vector<double>& distances = known.SampleDistances;
   const auto far = std::count_if(
     distances.begin(), distances.end(), [&](double distance) { return distance > reach; });
   if (far == 0)
   {
     return {};
   }
-  Sentence text = DescribeFarPoints("points with values", median, diagonal);
-  text << (text.Words().empty() ? "" : ": ") << far << " of " << distances.size()
-       << (far == 1 ? " points with values is" : " points with values are") << " farther than "
-       << reach << " from the surface, which is " << diagonal << " large; median distance "
-       << median << ", largest " << largest;
+  std::vector<double> sorted = distances;
+  const double median = Median(sorted);
+  Sentence text;
+  text << far << " of " << distances.size() << " points " << kind << (far == 1 ? " is" : " are")
+       << " farther than " << reach << " from the surface, which is " << diagonal
+       << " large; median distance " << median << ", largest "
+       << *std::max_element(distances.begin(), distances.end());
+  if (median > strange * diagonal)
+  {
+    text << "; their unit or origin may be another";
+  }
   constexpr std::size_t fewest = 8; // for three unknowns
   constexpr double share = 0.2; // of the distance, which a shift leaves
   if (surface.Mesh().NumberOfTriangles() > 0 && distances.size() >= fewest &&
     2 * static_cast<std::size_t>(far) > distances.size())
   {
-    const Shift shift = FindShift(known.SamplePlaces, surface);
+    const Shift shift = FindShift(places, surface);
     if (shift.MedianDistance < share * median)
     {
       text << "; a shift by (" << shift.By[0] << ", " << shift.By[1] << ", " << shift.By[2]
@@ -106,8 +113,6 @@ Sentence DescribeDistances(
   return text << " (set " << Word::Setting("MaximumDistance") << " to leave out those beyond it)";
 }
 
-} // namespace
-
 void ReportDistances(
   const Surface& surface, const KnownValues& known, double maximumDistance, RunResult& result)
 {
@@ -116,8 +121,9 @@ void ReportDistances(
   const double largest = sorted.empty() ? 0.0 : *std::max_element(sorted.begin(), sorted.end());
   result.AddNumber("MedianDistance", median);
   result.Numbers.push_back(Output::OfNumber("LargestDistance", largest, Combination::Largest));
-  const Sentence text =
-    maximumDistance == 0.0 ? DescribeDistances(known, median, largest, surface) : Sentence();
+  const Sentence text = maximumDistance == 0.0
+    ? DescribeFarPoints("with values", known.SamplePlaces, known.SampleDistances, surface)
+    : Sentence();
   if (!text.Words().empty())
   {
     result.WarnOnce(text);

@@ -147,7 +147,9 @@ TangentVectors MakeDirections(
 /// into one vertex.
 std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields);
 
-/// A number per vertex that identifies it in random numbers.
-std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields);
+/// A number per vertex that identifies it in random numbers. Without ids of points it is made from
+/// the coordinates, rounded to NoiseGrid(h), so that moves by round-off keep it. h: the mean edge.
+/// Collective.
+std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields, double h);
 
 } // namespace SurfaceDiffusion

@@ -158,11 +158,13 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
                    "cross-validation (of few values with the restricted likelihood as a lower "
                    "bound), or from NoiseLevel if that is above 0. Off: mu is Smoothing." },
     this->AutomaticSmoothing);
-  visitor.Number({ "NoiseLevel", "values",
-                   "The standard deviation of the noise of values with weight 1, in the unit of "
-                   "the data, 0 or more. AutomaticSmoothing and the standard errors use it. 0: "
-                   "estimated from what the smoothed result leaves of the values, and from "
-                   "repeated values at one place; correlated noise is not found." },
+  visitor.Number(
+    { "NoiseLevel", "values",
+      "The standard deviation of the noise of values with weight 1, in the unit of "
+      "the data, 0 or more. AutomaticSmoothing and the standard errors use it. 0: "
+      "estimated from what the smoothed result leaves of the values, and from "
+      "repeated values at one place; of correlated noise a warning tells, from 200 values "
+      "on." },
     this->NoiseLevel, SettingRange::NonNegative());
   visitor.Number({ "Smoothing", "h^2",
                    "mu, with AutomaticSmoothing off: the weight of the energy against the values, "
@@ -302,11 +304,9 @@ std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResu
   for (std::size_t c = 0; c < found.Columns.size() && findsNoise; ++c)
   {
     // Of white noise a smooth fit leaves more: the residuals of a tenth of the values are no estimate.
-    constexpr Index fewest = 10;
     constexpr double most = 0.9;
     const SmoothInterpolation::Column& column = found.Columns[c];
-    const Index count = model.Given().Count();
-    if (count >= fewest && column.Mu > 0.0 && column.DegreesOfFreedom > most * count)
+    if (column.Mu > 0.0 && column.DegreesOfFreedom > most * model.Given().Count())
     {
       const Sentence text = DescribeSmoothValues(
         model.Given(), static_cast<int>(c), column.NoiseLevel * unit, unit, state.Surface);

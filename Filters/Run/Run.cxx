@@ -213,8 +213,9 @@ void Run::MakeModel(
   }
   ModelInputs inputs{ *block.Surface, block.Units, std::move(data), std::move(directions),
     fields.Rates,
-    this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields)
-                                                      : std::vector<std::int64_t>(),
+    this->Settings->DescribeModel().UsesRandomNumbers
+      ? MakeVertexIds(*block.Surface, fields, block.Units.MeanEdgeLength)
+      : std::vector<std::int64_t>(),
     this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes,
     std::max(fields.AllColumns, fields.Data.Values.cols()),
     fields.FirstColumn + fields.Data.Values.cols() >= fields.AllColumns, fields.DataAreTerms,

@@ -364,19 +364,6 @@ double DiagonalOf(const Points& points, const Reduction& processes)
   return std::hypot(ends[0] + ends[3], ends[1] + ends[4], ends[2] + ends[5]);
 }
 
-Sentence DescribeFarPoints(const char* points, double medianDistance, double diagonal)
-{
-  constexpr double strange = 0.25;
-  Sentence text;
-  if (medianDistance > strange * diagonal)
-  {
-    text << "half of the " << points << " are " << medianDistance
-         << " or more from the surface, which is " << diagonal
-         << " large (their unit or origin may be another)";
-  }
-  return text;
-}
-
 TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vectors)
 {
   return surface.Delaunay() ? surface.Delaunay()->Transport(vectors) : vectors;

@@ -142,8 +142,4 @@ TangentVectors TransportToMesh(const Surface& surface, const TangentVectors& vec
 /// The diagonal of the bounding box of all pieces, in coordinate units.
 double DiagonalOf(const Points& points, const Reduction& processes);
 
-/// The warning that points with this median distance from the surface are strangely far, compared
-/// with that diagonal; otherwise empty. points: what they are called.
-Sentence DescribeFarPoints(const char* points, double medianDistance, double diagonal);
-
 } // namespace SurfaceDiffusion

@@ -432,8 +432,8 @@ class OtherCommands(CommandTest):
         self.succeed("distance lh.surf.gii a.npy --from 0.1,0,10.1")
         code, _, error = run("distance", "lh.surf.gii", "a.npy", "--from", "100,0,10100")
         self.assertEqual(code, 0)
-        self.assertRegex(error, r"warning: half of the points of the sources are 10090\S* or more from the surface, "
-                                r"which is 34")
+        self.assertRegex(error, r"warning: 1 of 1 points of the sources is farther than \S+ from the surface, "
+                                r"which is 34\S+ large; median distance 10090")
 
     def test_columns_have_names(self):
         axes = [f"{name} {axis}" for name in ("one", "two") for axis in "xyz"]

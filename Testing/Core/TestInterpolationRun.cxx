@@ -406,48 +406,50 @@ TEST(InterpolationRun, AsksForNumbersThatStandForNoValue)
   EXPECT_FALSE(Warns(Interpolate(s.Vertices, s.Faces, depths, Exact()), "stands for no value"));
 }
 
-TEST(InterpolationRun, WarnsOfCorrelatedNoise)
+TEST(InterpolationRun, WarnsOfCorrelatedNoiseAndNotOfSmoothFunctions)
 {
   const TestSurface s = Icosphere(4);
-  const Eigen::Index count = 100;
-  Values white(count, 1);
-  Values correlated(count, 1);
-  for (Eigen::Index i = 0; i < count; ++i)
+  const Eigen::Index most = 640;
+  const std::vector<Index> order = Testing::Permutation(s.NumberOfVertices(), 3);
+  Points places(most, 3);
+  Values white(most, 1);
+  Values correlated(most, 1);
+  Values wave(most, 1);
+  for (Eigen::Index i = 0; i < most; ++i)
   {
-    const auto x = s.Vertices.row(17 * i);
+    places.row(i) = s.Vertices.row(order[static_cast<std::size_t>(i)]);
     white(i, 0) = 0.6 * UniformRandom(5, 0, i);
+    wave(i, 0) = std::sin(3.0 * places(i, 0) + places(i, 1));
     correlated(i, 0) = 0.0;
     for (Eigen::Index j = 0; j < s.Vertices.rows(); ++j) // over some distances of values
     {
-      const double square = (x - s.Vertices.row(j)).squaredNorm();
+      const double square = (places.row(i) - s.Vertices.row(j)).squaredNorm();
       correlated(i, 0) +=
-        0.02 * std::exp(-0.5 * square / std::pow(0.4, 2)) * (UniformRandom(6, 0, j) - 0.5);
+        0.05 * std::exp(-0.5 * square / std::pow(0.12, 2)) * (UniformRandom(6, 0, j) - 0.5);
     }
   }
-  for (const Eigen::Index few : { count, Eigen::Index(30) })
+  const auto fitted =
+    [&](const Values& added, const InterpolationSettings& settings, Eigen::Index count)
   {
-    const auto fitted = [&](const Values& noise, const InterpolationSettings& settings)
-    {
-      Points places(few, 3);
-      for (Eigen::Index i = 0; i < few; ++i)
-      {
-        places.row(i) = s.Vertices.row(17 * i);
-      }
-      Fields fields = SamplesOf(places);
-      auto samples = std::make_shared<PointSamples>(*fields.Samples);
-      samples->Given += noise.topRows(few);
-      fields.Samples = samples;
-      return Fitted(s, fields, settings);
-    };
-    const std::string text = "NoiseLevel: the data show no white noise but are smooth over about ";
-    InterpolationSettings settings;
-    EXPECT_TRUE(Warns(fitted(correlated, settings), text)) << few;
-    EXPECT_TRUE(Warns(fitted(correlated, settings), "(set NoiseLevel, or turn Exact on")) << few;
-    EXPECT_FALSE(Warns(fitted(white, settings), text)) << few;
-    EXPECT_FALSE(Warns(fitted(correlated, Exact()), text));
-    settings.NoiseLevel = 0.1;
-    EXPECT_FALSE(Warns(fitted(correlated, settings), text));
+    Fields fields = SamplesOf(places.topRows(count));
+    auto samples = std::make_shared<PointSamples>(*fields.Samples);
+    samples->Given += added.topRows(count);
+    fields.Samples = samples;
+    return Fitted(s, fields, settings);
+  };
+  const std::string text = "NoiseLevel: the data show no white noise but are smooth over about ";
+  InterpolationSettings settings;
+  EXPECT_TRUE(Warns(fitted(correlated, settings, most), text));
+  EXPECT_TRUE(Warns(fitted(correlated, settings, most), "(set NoiseLevel, or turn Exact on"));
+  EXPECT_FALSE(Warns(fitted(correlated, Exact(), most), text));
+  for (const Eigen::Index count : { Eigen::Index(20), Eigen::Index(60), Eigen::Index(200), most })
+  {
+    EXPECT_FALSE(Warns(fitted(Values::Zero(most, 1), settings, count), text)) << count;
+    EXPECT_FALSE(Warns(fitted(wave, settings, count), text)) << count;
+    EXPECT_FALSE(Warns(fitted(white, settings, count), text)) << count;
   }
+  settings.NoiseLevel = 0.1;
+  EXPECT_FALSE(Warns(fitted(correlated, settings, most), text));
 }
 
 TEST(InterpolationRun, ReportsEachKindOfBadValuesInOneLine)

@@ -542,11 +542,12 @@ TEST(DistanceFilter, WarnsAboutSourcesInAnotherUnit)
     filter->Update();
     ASSERT_EQ(messages.Warnings.size(), 1u);
     EXPECT_TRUE(Has(messages.Warnings[0],
-      "half of the points of the sources are 60.5392 or")) // of (60, 35)
+      "points of the sources are farther than 0.894427 from the surface, which is 8.94427 "
+      "large; median distance 60.5392")) // of (60, 35)
       << messages.Warnings[0];
-    EXPECT_TRUE(Has(messages.Warnings[0], "which is 8.94427 large (their unit or origin may be"));
-    filter->SetInputData(1, Places({ { 0.5, 0.5, 2.0 }, { 75.0, 10.0, 0.0 }, { 6.0, 3.5, -2.0 } }));
-    filter->Update(); // one of several is no matter of units
+    EXPECT_TRUE(Has(messages.Warnings[0], "; their unit or origin may be another"));
+    filter->SetInputData(1, Places({ { 0.5, 0.5, 0.5 }, { 0.75, 1.0, 0.0 }, { 6.0, 3.5, -0.5 } }));
+    filter->Update();
     filter->SetMaximumDistance(100.0); // the user has said how far is far
     filter->SetInputData(1, Places({ { 60.0, 35.0, 0.0 } }));
     filter->Update();

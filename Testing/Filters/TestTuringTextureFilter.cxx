@@ -122,6 +122,23 @@ TEST(TuringTextureFilter, GrowsSpotsFromNoise)
   EXPECT_NEAR(filter->GetWavelengthGrowthRate(), 0.776, 1e-3);
 }
 
+TEST(TuringTextureFilter, IsKeptWhereTheSurfaceMovesByRoundOff)
+{
+  const auto moved = Sphere(4);
+  for (vtkIdType i = 0; i < moved->GetNumberOfPoints(); ++i)
+  {
+    double x[3];
+    moved->GetPoint(i, x);
+    moved->GetPoints()->SetPoint(i, x[0] + 1e-12, x[1] - 1e-12 * (i % 3), x[2] + 1e-12 * (i % 2));
+  }
+  const auto filter = MakeFilter(Sphere(4));
+  filter->Update();
+  vtkSmartPointer<vtkDataArray> expected = Result(filter, "u1");
+  filter->SetInputData(moved);
+  filter->Update();
+  EXPECT_LT(LargestDifference(Result(filter, "u1"), expected), 1e-6 * High(expected));
+}
+
 /// Whose default is a size of the surface where this has few edges.
 TEST(TuringTextureFilter, KeepsTheRatesOfFineSurfaces)
 {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -32,28 +34,59 @@ inline double UniformRandom(std::int64_t seed, std::int64_t component, std::int6
   return static_cast<double>(bits >> 11) * unit;
 }
 
-/// A number for each of `count` points from its coordinates, place(i, x) with double x[3], and its
-/// rank among the points at the same place: an id that does not depend on the numbering of other
-/// points, nor on the pieces that a surface is divided into. 52 bits, which a double holds.
-template <typename Place>
-std::vector<std::int64_t> IdsOfPlaces(std::size_t count, const Place& place)
+/// The grid of IdsOfPlaces() on a surface with mean edges of length h: a power of two near h / 4096,
+/// which round-off of h does not change.
+inline double NoiseGrid(double h)
 {
+  const double power = std::floor(std::log2(h) + 0.6180339887);
+  return std::isfinite(power) ? std::exp2(power - 12.0) : 0.0;
+}
+
+/// A number for each of `count` points from its coordinates, place(i, x) with double x[3], and its
+/// rank, in the order of the coordinates, among the points in the same cell of a grid: an id that
+/// does not depend on the numbering of other points, nor on the pieces that a surface is divided
+/// into, nor on round-off of the coordinates. grid: the size of the cells; 0: the coordinates
+/// themselves. 52 bits, which a double holds.
+template <typename Place>
+std::vector<std::int64_t> IdsOfPlaces(std::size_t count, const Place& place, double grid = 0.0)
+{
+  using Coordinates = std::array<double, 3>;
+  const auto placeOf = [&](std::size_t i)
+  {
+    Coordinates x;
+    place(i, x.data());
+    for (double& coordinate : x)
+    {
+      coordinate = std::isnan(coordinate) ? 0.0 : coordinate + 0.0; // -0 becomes 0
+    }
+    return x;
+  };
   std::vector<std::pair<std::uint64_t, std::size_t>> hashes(count);
   for (std::size_t i = 0; i < count; ++i)
   {
-    double x[3];
-    place(i, x);
     std::uint64_t hash = 0;
-    for (const double coordinate : x)
+    for (const double coordinate : placeOf(i))
     {
-      const double number = coordinate + 0.0; // -0 becomes 0
+      // The golden ratio keeps 0, 1, their midpoints and the like away from the ends of cells.
+      const double number =
+        grid > 0.0 ? std::floor(coordinate / grid + 0.6180339887) + 0.0 : coordinate;
       std::uint64_t bits = 0;
       std::memcpy(&bits, &number, sizeof(bits));
       hash = MixBits(hash ^ bits);
     }
     hashes[i] = { hash, i };
   }
-  std::sort(hashes.begin(), hashes.end());
+  std::sort(hashes.begin(), hashes.end(),
+    [&](const auto& a, const auto& b)
+    {
+      if (a.first != b.first || a.second == b.second)
+      {
+        return a.first < b.first;
+      }
+      const Coordinates ofA = placeOf(a.second);
+      const Coordinates ofB = placeOf(b.second);
+      return ofA != ofB ? ofA < ofB : a.second < b.second;
+    });
   std::vector<std::int64_t> ids(count);
   std::uint64_t rank = 0;
   for (std::size_t k = 0; k < count; ++k)

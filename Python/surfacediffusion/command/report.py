@@ -39,6 +39,8 @@ def in_options(text, arguments):
     # A number that is given turns its choice from the data off.
     text = re.sub(r"turn off automatic_\w+ and |, with automatic_\w+ off", "", text)
     text = text.replace("turn automatic_threshold on", "give no edge_threshold")
+    if not hasattr(arguments, "within"):  # of distances, whose sources are given one by one
+        text = text.replace(" (set maximum_distance to leave out those beyond it)", "")
     for setting, (destination, option) in _OPTIONS.items():
         if hasattr(arguments, destination):
             text = re.sub(rf"(?<![\w./-]){setting}(?![\w./-])", option, text)  # names of files stay

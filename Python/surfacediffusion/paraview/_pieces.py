@@ -77,7 +77,8 @@ def stitch_pieces(
     by_surface: dict[int, list[Piece]] = {}
     for piece in pieces:
         by_surface.setdefault(piece.block.surface, []).append(piece)
-    return [_stitch(by_surface[number], owners, numbers, names, attributes) for number in sorted(by_surface)]
+    return [_stitch(by_surface[number], owners, numbers, by_id, names, attributes)
+            for number in sorted(by_surface)]
 
 
 def _global_ids(data: Any) -> NDArray[np.int64] | None:
@@ -159,7 +160,7 @@ def _flags(piece: Piece) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
 # Surfaces --------------------------------------------------------------------------------------
 
 
-def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.int64],
+def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.int64], by_id: bool,
             names: dict[str, bool], attributes: set[int]) -> Stitched:
     rows = np.concatenate([np.arange(piece.rows.start, piece.rows.stop) for piece in pieces])
     sources = rows[owners[rows] == rows]
@@ -177,7 +178,8 @@ def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.
     surface.GetPoints().SetData(make_array("Points", places.astype(np.float64 if is_double else np.float32)))
     _merge([(piece.block.input.GetPointData(), 0, len(piece.places)) for piece in with_points],
            of_pieces, names, attributes, surface.GetPointData())
-    surface.GetPointData().SetGlobalIds(make_array("surface diffusion point id", numbers[sources]))
+    if by_id:  # numbers of places are for the order alone
+        surface.GetPointData().SetGlobalIds(make_array("surface diffusion point id", numbers[sources]))
     cell_sources = _stitch_cells(pieces, surface)
     with_cells = [piece for piece in pieces if piece.cells.count]
     _merge([(piece.block.input.GetCellData(), piece.cells.first, piece.cells.count) for piece in with_cells],
