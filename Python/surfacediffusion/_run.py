@@ -17,6 +17,7 @@ from . import _core
 from ._settings import as_switch, convert_all, settings_of, shorten, spell
 from ._surface import (
     Surface, as_directions, as_factors, as_flags, as_numbers, data_components, find_place,
+    require_shape,
 )
 
 if TYPE_CHECKING:
@@ -198,8 +199,7 @@ class Input(Given):
             arrays["directions"] = as_directions(directions_name, directions, (n, m))
         if rates is not None:
             found = as_numbers("rates", rates)
-            if found.shape != (m, 4):
-                raise ValueError(f"rates has shape {found.shape}; allowed: ({m}, 4), one row per face")
+            require_shape("rates", found, found.shape == (m, 4), f"({m}, 4), one row per face")
             arrays["rates"] = np.ascontiguousarray(found, dtype=np.float64), False
         for name, array, convert, what in (
                 ("mask", mask, as_flags, "flag"), ("fixed", fixed, as_flags, "flag"),
