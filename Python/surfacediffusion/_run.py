@@ -164,8 +164,9 @@ def make_core(
     data, *others = [arrays.get(name, (None, False))[0] for name in (
         "data", "mask", "fixed", "directions", "rates", "fidelity", "seeds")]
     on_faces = [name for name, (array, at_faces) in arrays.items() if array is not None and at_faces]
-    arguments: list[Any] = [surface, data, 0 if data is None else data_components(data), *others, data_are_terms]
-    return _core.Fields(*arguments, on_faces)
+    components = 0 if data is None else data_components(data)
+    arguments: list[Any] = [surface, data, components, *others, data_are_terms, on_faces]
+    return _core.Fields(*arguments)
 
 
 class Input(Given):
