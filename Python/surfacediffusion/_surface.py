@@ -166,7 +166,7 @@ def find_on_faces(name: str, values: Any, surface: Surface, on_faces: bool | Non
     """Whether data are on faces: as `on_faces` says, or if their number is that of the faces and not
     that of the points."""
     if on_faces is not None:
-        return as_switch("on_faces", on_faces)
+        return as_switch("on_faces", on_faces, "True, False or None")
     array, n, m = as_numbers(name, values), surface.n_points, surface.n_faces
     require_shape(name, array, array.ndim in (1, 2) and array.shape[0] in (n, m) and array.size > 0,
                   f"({n},) or ({n}, k), one row per point, or ({m},) or ({m}, k), one row per face")
