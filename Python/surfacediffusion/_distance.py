@@ -16,7 +16,7 @@ from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, interpolate_points, take_along
 from ._run import Input, Progress, ProgressReporter, Runner, warn
 from ._settings import as_number, settings_of, shorten
-from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place, left_out
+from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place, left_out, require_shape
 
 __all__ = ["NearestSources", "distance", "distances", "nearest_sources"]
 
@@ -351,9 +351,7 @@ def _as_places_in_triangles(
     """Rows of surface.triangles, and barycentric coordinates."""
     rows = _as_rows("sources[0]", faces, surface.n_faces, "faces")
     weights = np.ascontiguousarray(as_numbers("sources[1]", barycentric), dtype=np.float64)
-    if weights.shape != (len(rows), 3):
-        raise ValueError(f"sources[1] has shape {weights.shape}; allowed: ({len(rows)}, 3), one row per "
-                         "face")
+    require_shape("sources[1]", weights, weights.shape == (len(rows), 3), f"({len(rows)}, 3), one row per face")
     bad = ~((weights >= 0.0).all(axis=1) & (np.abs(weights.sum(axis=1) - 1.0) <= 1e-6))
     if bad.any():
         row = int(np.argmax(bad))

@@ -16,7 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._run import Progress, ProgressReporter, check_parts, part_of, warn
 from ._settings import as_integer, as_number, as_switch, convert_all, shorten, spell
-from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place, left_out, place
+from ._surface import (
+    Surface, SurfaceLike, as_data, as_flags, as_surface, find_mask, find_place, left_out, place, require_shape,
+)
 
 __all__ = ["Surrogates", "random_field", "surrogates"]
 
@@ -232,8 +234,7 @@ def surrogates(
     """
     surface = as_surface(surface)
     array = as_data("values", values, surface.n_points)
-    if array.shape[1] != 1:
-        raise ValueError(f"values has shape {np.shape(values)}; allowed: ({surface.n_points},), one map")
+    require_shape("values", values, array.shape[1] == 1, f"({surface.n_points},), one map")
     given = array[:, 0].astype(np.float64)
     check_finite("values", given)
     if np.isnan(given).all():

@@ -26,7 +26,7 @@ from ._run import (
     Input, Progress, ProgressReporter, Runner, States, find_result_type, take_old_switch, warn,
 )
 from ._settings import settings_of, shorten, spell_documentation
-from ._surface import SurfaceLike, as_numbers, as_surface, left_out, place
+from ._surface import SurfaceLike, as_numbers, as_surface, left_out, place, require_shape
 
 __all__ = [
     "curvature", "denoise_mesh", "derivatives", "direction_field", "harmonic_map", "heat", "interpolate",
@@ -960,9 +960,8 @@ def derivatives(
     name = properties.pop("_name", "values")
     if properties.get("quantity", "") in ("Divergence", "divergence", "Curl", "curl"):
         shape, n, m = np.shape(as_numbers(name, values)), surface.n_points, surface.n_faces
-        if len(shape) not in (1, 2) or shape[0] not in (n, m):
-            raise ValueError(f"{name} has shape {shape}; allowed: ({n}, 3) or ({n}, 3 k), one row of 1 or k "
-                             f"vectors per point, or ({m}, 3) or ({m}, 3 k), one per face")
+        require_shape(name, values, len(shape) in (1, 2) and shape[0] in (n, m), (
+            f"({n}, 3) or ({n}, 3 k), one row of 1 or k vectors per point, or ({m}, 3) or ({m}, 3 k), one per face"))
     data, on_faces, _ = take_data("derivatives", surface, values, on_faces, name)
     data = data.astype(np.float64) if data.dtype == np.uint8 else data  # no colour, whose alpha is no data
     given = Input(surface, data, data_on_faces=on_faces, mask=left_out(mask, roi, surface))

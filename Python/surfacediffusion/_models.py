@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ._result import RegionBoundary
 from ._run import Given, find_result_type
 from ._settings import shorten, snake_case
-from ._surface import Surface, as_data, as_factors, as_numbers, find_on_faces, left_out
+from ._surface import Surface, as_data, as_factors, as_numbers, find_on_faces, left_out, require_shape
 
 #: The keywords of input arrays, by their names in messages.
 ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "directions",
@@ -127,8 +127,8 @@ def take_data(
         name, on_faces = "initial", False
         if values is None:
             return None, False, False
-        if np.shape(as_numbers(name, values)) != (n, 2):
-            raise ValueError(f"initial has shape {np.shape(values)}; allowed: ({n}, 2), one row per point")
+        shape = np.shape(as_numbers(name, values))
+        require_shape(name, values, shape == (n, 2), f"({n}, 2), one row per point")
     name = "vectors" if function == "harmonic_map" else name
     on_faces = find_on_faces(name, values, surface, on_faces)
     data = as_data(name, values, *((surface.n_faces, "face") if on_faces else (n, "point")))
@@ -151,15 +151,12 @@ def as_samples(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64] | None]:
     """Places (p, 3), values (p, k) and weights (p,) of interpolate."""
     places = np.ascontiguousarray(as_numbers("points", points), dtype=np.float64)
-    if places.ndim != 2 or places.shape[1] != 3:
-        raise ValueError(f"points has shape {places.shape}; allowed: (p, 3), one row per value")
+    require_shape("points", places, places.shape[1:] == (3,), "(p, 3), one row per value")
     found = np.ascontiguousarray(as_numbers("values", values), dtype=np.float64)
     p = len(places)
-    if found.ndim not in (1, 2) or len(found) != p or (found.ndim == 2 and found.shape[1] == 0):
-        raise ValueError(f"values has shape {found.shape}; allowed: ({p},) or ({p}, k), one row per "
-                         "point of points")
+    require_shape("values", found, found.ndim in (1, 2) and len(found) == p and found.shape[1:] != (0,),
+                  f"({p},) or ({p}, k), one row per point of points")
     weights = as_factors("fidelity", fidelity)
-    if weights is not None and weights.shape != (p,):
-        raise ValueError(f"fidelity has shape {weights.shape}; allowed: ({p},), one number per point "
-                         "of points")
+    require_shape("fidelity", weights, weights is None or weights.shape == (p,),
+                  f"({p},), one number per point of points")
     return places, found.reshape(p, -1 if found.size else 1), weights

@@ -14,7 +14,7 @@ from . import _core
 from ._functions import SHARED
 from ._run import Progress, ProgressReporter, check_parts, warn_of_seams
 from ._settings import as_integer, as_switch
-from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask, left_out
+from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask, left_out, require_shape
 
 __all__ = ["Eigenmodes", "eigenmodes", "gradient_matrix", "mass_matrix", "stiffness_matrix"]
 
@@ -271,9 +271,8 @@ def _as_tensors(surface: Surface, diffusivity: Any) -> NDArray[np.float64] | Non
         return None
     m = surface.n_faces
     array = np.asarray(as_numbers("diffusivity", diffusivity), dtype=np.float64)
-    if array.shape not in ((m,), (m, 3, 3)):
-        raise ValueError(f"diffusivity has shape {array.shape}; allowed: ({m},), one number per "
-                         f"face, or ({m}, 3, 3), one tensor per face")
+    require_shape("diffusivity", array, array.shape in ((m,), (m, 3, 3)),
+                  f"({m},), one number per face, or ({m}, 3, 3), one tensor per face")
     if array.ndim == 1:
         array = array[:, None, None] * np.eye(3)
     bad = ~np.isfinite(array).all(axis=(1, 2))

@@ -17,7 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._run import Progress, ProgressReporter, warn
 from ._settings import as_integer, as_number, shorten
-from ._surface import Surface, SurfaceLike, as_numbers, as_outside, as_surface, known_place, place
+from ._surface import (
+    Surface, SurfaceLike, as_numbers, as_outside, as_surface, known_place, place, require_shape,
+)
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -58,16 +60,15 @@ class RefinedSurface:
         others, such as colours, are rounded."""
         array = as_numbers("values", values)
         n = self.surface.n_points - len(self.parents)
-        if array.ndim not in (1, 2) or len(array) != n:
-            raise ValueError(f"values has shape {array.shape}; allowed: ({n},) or ({n}, k), one row "
-                             "per given point")
+        require_shape("values", array, array.ndim in (1, 2) and len(array) == n,
+                      f"({n},) or ({n}, k), one row per given point")
         return interpolate_points(array, self.parents)
 
     def at_faces(self, values: ArrayLike) -> NDArray[Any]:
         """Data of the given faces (m,) or (m, k) at the triangles: each has those of its face."""
         array = np.asarray(values)
-        if array.ndim not in (1, 2) or len(array) <= self.faces.max(initial=0):
-            raise ValueError(f"values has shape {array.shape}; allowed: one row per given face")
+        fits = array.ndim in (1, 2) and len(array) > self.faces.max(initial=0)
+        require_shape("values", array, fits, "one row per given face")
         return array[self.faces]
 
 
@@ -287,9 +288,8 @@ def take_along(
         on_faces = array.ndim > 0 and len(array) == m and (n != m or bool(known))
         if name in _DATA and given.get("on_faces") is not None:
             on_faces = bool(given["on_faces"])
-        if array.ndim not in (1, 2) or len(array) != (m if on_faces else n):
-            raise ValueError(f"{name} has shape {array.shape}; allowed: one row per point, of which there "
-                             f"are {n}, or per face, {m}")
+        require_shape(name, array, array.ndim in (1, 2) and len(array) == (m if on_faces else n),
+                      f"one row per point, of which there are {n}, or per face, {m}")
         found = fine.at_faces(array) if on_faces else interpolate_points(array, fine.parents, RULES.get(name))
         carried[name] = place(found, on_faces)
         if name in _DATA and "on_faces" in given:

@@ -17,6 +17,7 @@ from . import _core
 from ._settings import as_switch, convert_all, settings_of, shorten, spell
 from ._surface import (
     Surface, as_directions, as_factors, as_flags, as_numbers, data_components, find_place,
+    require_shape,
 )
 
 if TYPE_CHECKING:
@@ -163,8 +164,9 @@ def make_core(
     data, *others = [arrays.get(name, (None, False))[0] for name in (
         "data", "mask", "fixed", "directions", "rates", "fidelity", "seeds")]
     on_faces = [name for name, (array, at_faces) in arrays.items() if array is not None and at_faces]
-    arguments: list[Any] = [surface, data, 0 if data is None else data_components(data), *others, data_are_terms]
-    return _core.Fields(*arguments, on_faces)
+    components = 0 if data is None else data_components(data)
+    arguments: list[Any] = [surface, data, components, *others, data_are_terms, on_faces]
+    return _core.Fields(*arguments)
 
 
 class Input(Given):
@@ -198,8 +200,7 @@ class Input(Given):
             arrays["directions"] = as_directions(directions_name, directions, (n, m))
         if rates is not None:
             found = as_numbers("rates", rates)
-            if found.shape != (m, 4):
-                raise ValueError(f"rates has shape {found.shape}; allowed: ({m}, 4), one row per face")
+            require_shape("rates", found, found.shape == (m, 4), f"({m}, 4), one row per face")
             arrays["rates"] = np.ascontiguousarray(found, dtype=np.float64), False
         for name, array, convert, what in (
                 ("mask", mask, as_flags, "flag"), ("fixed", fixed, as_flags, "flag"),

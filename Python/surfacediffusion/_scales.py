@@ -14,7 +14,7 @@ from ._fields import (
 )
 from ._run import Progress, ProgressReporter
 from ._settings import as_integer, as_number, shorten
-from ._surface import Surface, SurfaceLike, as_data, as_numbers, as_surface, left_out
+from ._surface import Surface, SurfaceLike, as_data, as_numbers, as_surface, left_out, require_shape
 
 __all__ = ["Spectrum", "scale_filter", "spectrum"]
 
@@ -84,9 +84,8 @@ def scale_filter(
     if isinstance(wavelength, (bool, np.bool_)):
         raise ValueError(f"wavelength is {wavelength}; allowed: finite numbers above 0")
     lengths = np.asarray(as_numbers("wavelength", wavelength), dtype=np.float64)
-    if lengths.shape not in ((), (surface.n_points,)):
-        raise ValueError(f"wavelength has shape {lengths.shape}; allowed: a number, or "
-                         f"({surface.n_points},), one per point")
+    require_shape("wavelength", lengths, lengths.shape in ((), (surface.n_points,)),
+                  f"a number, or ({surface.n_points},), one per point")
     fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), data))
     lengths = np.array(np.broadcast_to(lengths, (surface.n_points,)))
     known = fields.areas() > 0.0

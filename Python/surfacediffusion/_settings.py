@@ -94,10 +94,10 @@ def as_integer(name: str, value: Any, low: int, high: int, allowed: str = "") ->
     return int(value)
 
 
-def as_switch(name: str, value: Any) -> bool:
+def as_switch(name: str, value: Any, allowed: str = "True or False") -> bool:
     """The value as a bool. ValueError if it is none."""
     if not isinstance(value, (bool, np.bool_)):
-        raise ValueError(f"{name} is {shorten(value)}; allowed: True or False")
+        raise ValueError(f"{name} is {shorten(value)}; allowed: {allowed}")
     return bool(value)
 
 

@@ -31,6 +31,12 @@ def as_numbers(name: str, values: Any) -> NDArray[Any]:
     return array
 
 
+def require_shape(name: str, array: Any, fits: bool, allowed: str) -> None:
+    """ValueError unless the shape of an array fits."""
+    if not fits:
+        raise ValueError(f"{name} has shape {np.shape(array)}; allowed: {allowed}")
+
+
 class Placed(np.ndarray):  # type: ignore[type-arg,unused-ignore]  # numpy 1.21 takes no arguments
     """An array that is known to be on points or on faces, of which there may be as many. What is computed
     from it has no known place."""
@@ -79,9 +85,7 @@ def find_place(name: str, values: Any, sizes: tuple[int, int], what: str, on_fac
     on_faces: the answer if these are equal and the values have no known place."""
     n, m = sizes
     shape = np.shape(values)
-    if shape not in ((n,), (m,)):
-        raise ValueError(f"{name} has shape {shape}; allowed: ({n},), one {what} per point, or "
-                         f"({m},), one per face")
+    require_shape(name, values, shape in ((n,), (m,)), f"({n},), one {what} per point, or ({m},), one per face")
     known = known_place(values)
     return (on_faces if known is None else known) if n == m else shape[0] == m
 
@@ -92,9 +96,8 @@ def as_directions(
     """Directions on points or faces, and whether they are on faces: by their number unless known."""
     n, m = sizes
     array, on_faces = as_numbers(name, values), known_place(values)
-    if array.shape not in ((n, 3), (m, 3)):
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({n}, 3), one row per point, or "
-                         f"({m}, 3), one row per face")
+    require_shape(name, array, array.shape in ((n, 3), (m, 3)),
+                  f"({n}, 3), one row per point, or ({m}, 3), one row per face")
     if n == m and on_faces is None:
         raise ValueError(f"{name} has one row per point and per face, of which there are {n} each; "
                          f"allowed: on_points({name}) or on_faces({name})")
@@ -107,8 +110,7 @@ def as_flags(name: str, values: Any, points: int | None = None) -> NDArray[np.ui
     if values is None:
         return None
     array = np.ma.getdata(as_numbers(name, values))
-    if points is not None and array.shape != (points,):
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},), one flag per point")
+    require_shape(name, array, points is None or array.shape == (points,), f"({points},), one flag per point")
     return np.ascontiguousarray(array != 0, dtype=np.uint8)
 
 
@@ -153,9 +155,8 @@ def as_data(name: str, values: Any, points: int, row_name: str = "point") -> NDA
     """The data as float64, float32 or uint8, with one row per point (or face: `row_name`) and one
     column per component."""
     array = as_numbers(name, values)
-    if array.ndim not in (1, 2) or array.shape[0] != points or array.size == 0:
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({points},) or ({points}, k), "
-                         f"one row per {row_name}")
+    require_shape(name, array, array.ndim in (1, 2) and array.shape[0] == points and array.size > 0,
+                  f"({points},) or ({points}, k), one row per {row_name}")
     kept = array.dtype.kind == "f" and array.dtype.itemsize == 4
     dtype: Any = np.float32 if kept else np.uint8 if array.dtype == np.uint8 else np.float64
     return np.ascontiguousarray(array.reshape(points, -1), dtype=dtype)
@@ -165,11 +166,10 @@ def find_on_faces(name: str, values: Any, surface: Surface, on_faces: bool | Non
     """Whether data are on faces: as `on_faces` says, or if their number is that of the faces and not
     that of the points."""
     if on_faces is not None:
-        return as_switch("on_faces", on_faces)
+        return as_switch("on_faces", on_faces, "True, False or None")
     array, n, m = as_numbers(name, values), surface.n_points, surface.n_faces
-    if array.ndim not in (1, 2) or array.shape[0] not in (n, m) or array.size == 0:
-        raise ValueError(f"{name} has shape {array.shape}; allowed: ({n},) or ({n}, k), one row per "
-                         f"point, or ({m},) or ({m}, k), one row per face")
+    require_shape(name, array, array.ndim in (1, 2) and array.shape[0] in (n, m) and array.size > 0,
+                  f"({n},) or ({n}, k), one row per point, or ({m},) or ({m}, k), one row per face")
     return bool(array.shape[0] != n or (n == m and known_place(values)))
 
 
@@ -181,8 +181,7 @@ def data_components(array: NDArray[Any]) -> int:
 
 def _as_points(points: Any) -> NDArray[np.float64]:
     array = as_numbers("points", points)
-    if array.ndim != 2 or array.shape[1] != 3 or array.shape[0] == 0:
-        raise ValueError(f"points has shape {array.shape}; allowed: (n, 3) with n > 0")
+    require_shape("points", array, array.shape[1:] == (3,) and len(array) > 0, "(n, 3) with n > 0")
     infinite = ~np.isfinite(array).all(axis=1)
     if infinite.any():
         row = int(np.argmax(infinite))
@@ -304,9 +303,7 @@ class Surface:
     def _set_areas(self, areas: ArrayLike) -> NDArray[np.float64]:
         """Pass the areas on as factors of those of the triangles."""
         given = np.array(as_numbers("areas", areas), dtype=np.float64)
-        if given.shape != (self.n_points,):
-            raise ValueError(f"areas has shape {given.shape}; allowed: ({self.n_points},), one per "
-                             "point")
+        require_shape("areas", given, given.shape == (self.n_points,), f"({self.n_points},), one per point")
         found = self._triangle_areas()
         used = found > 0
         wrong = used & ~(np.isfinite(given) & (given > 0))
