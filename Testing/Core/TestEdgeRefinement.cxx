@@ -247,7 +247,7 @@ TEST(EdgeRefinement, OddTrianglesDoNoHarm)
   EXPECT_EQ(0.0, none.LongestEdge);
 }
 
-/// Each page is taken from the list of an edge of all pages, at a cost that does not grow with them.
+/// Each page is taken from the list of an edge of all, at a cost that does not grow with them.
 TEST(EdgeRefinement, AnEdgeCanHaveTwentyThousandTriangles)
 {
   const Surface book = TrianglesAtAnEdge(20000);

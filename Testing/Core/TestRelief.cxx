@@ -535,13 +535,12 @@ TEST(TriangleStars, HaveAllTrianglesThatCross)
   Surface folded = Cone(count);
   for (Index i = 0; i < count; i += 10) // the slice beside it is folded over its neighbours
   {
-    folded.Vertices.row(i) =
-      folded.Vertices.row((i + 17) % count) * 1.01 + Row3(0.01, 0.02, 0.015);
+    folded.Vertices.row(i) = folded.Vertices.row((i + 17) % count) * 1.01 + Row3(0.01, 0.02, 0.015);
   }
   const Index half = 150;
-  for (const Surface& s : { folded, TwoCones(half, 0.6, { 0.01, 0.02, 0 }),
-         TwoCones(half, 0.6, { 0.3, 0.1, -0.2 }),
-         Joined(Cone(half), Rotated(Moved(Plate(8, 1.0), { 0, 0, 0.5 }))) })
+  for (const Surface& s :
+    { folded, TwoCones(half, 0.6, { 0.01, 0.02, 0 }), TwoCones(half, 0.6, { 0.3, 0.1, -0.2 }),
+      Joined(Cone(half), Rotated(Moved(Plate(8, 1.0), { 0, 0, 0.5 }))) })
   {
     const auto crosses = FindSelfIntersections(s.Vertices, s.Faces);
     Index found = 0;

@@ -12,8 +12,8 @@
 namespace SurfaceDiffusion
 {
 
-/// Slabs between parallel planes around a triangle, or around the directions in which it is seen from
-/// a place: tighter than its box, of which a needle fills next to nothing.
+/// Slabs between parallel planes around a triangle, or around the directions in which it is seen
+/// from a place: tighter than its box, of which a needle fills next to nothing.
 class Slabs
 {
 public:

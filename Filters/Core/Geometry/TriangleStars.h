@@ -56,13 +56,14 @@ public:
       {
         // Seen from the vertex of the star, t meets the arcs of the triangles that it meets.
         const Slabs seen = Slabs::Seen(corners, star.Centre, rounding);
-        star.Visit(star.ArcBoxes, [&](const Box& other) { return seen.Meet(other); }, visit);
+        star.Visit(
+          star.ArcBoxes, [&](const Box& other) { return seen.Meet(other); }, visit);
       }
       else if (s != own)
       {
         const Slabs around = Slabs::Around(corners, rounding);
-        star.Visit(star.Boxes,
-          [&](const Box& other) { return enters(other) && around.Meet(other); }, visit);
+        star.Visit(
+          star.Boxes, [&](const Box& other) { return enters(other) && around.Meet(other); }, visit);
       }
       else if (star.Arcs.rows() > 0)
       {
