@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BlockParts.h"
+#include "Hubs.h"
 
 #include "Core/Surface/EdgeRefinement.h"
 
@@ -244,4 +245,15 @@ TEST(EdgeRefinement, OddTrianglesDoNoHarm)
   const RefinedSurface none = RefineEdges(Points(0, 3), Triangles(0, 3), 0.1, NoLimit);
   EXPECT_EQ(0, none.Faces.rows());
   EXPECT_EQ(0.0, none.LongestEdge);
+}
+
+/// Each page is taken from the list of an edge of all, at a cost that does not grow with them.
+TEST(EdgeRefinement, AnEdgeCanHaveTwentyThousandTriangles)
+{
+  const Surface book = TrianglesAtAnEdge(20000);
+  const RefinedSurface refined = RefineEdges(book.Vertices, book.Faces, 0.4, NoLimit);
+  EXPECT_LE(refined.LongestEdge, 0.4);
+  EXPECT_EQ(refined.Faces.rows(), 24 * book.NumberOfTriangles());
+  const double area = AreaOf(book.Vertices, book.Faces);
+  EXPECT_NEAR(AreaOf(refined.Vertices, refined.Faces), area, 1e-10 * area);
 }

@@ -6,6 +6,7 @@
 
 #include "Core/Geometry/SmoothLineField.h"
 #include "Core/Geometry/SurfaceDenoising.h"
+#include "Hubs.h"
 #include "NoisySurfaces.h"
 #include "RunInput.h"
 #include "SphereData.h"
@@ -14,6 +15,7 @@
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
 #include "Run/MumfordShahSettings.h"
+#include "Run/SegmentationSettings.h"
 #include "Run/TensorDiffusionSettings.h"
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
@@ -66,6 +68,32 @@ std::map<SolverPurpose, long> FactorizationsOf(ModelSettings settings)
     }
   }
   return found;
+}
+
+/// The number of iterations of a run on the triangles around a vertex, from two levels or from unit
+/// vectors under noise.
+template <typename ModelSettings>
+int IterationsAroundAVertex(ModelSettings settings)
+{
+  RunInput input(TrianglesAtAVertex(6000));
+  const bool takesVectors = std::is_same_v<ModelSettings, HarmonicMapSettings>;
+  Values& values = input.Data.Data.Values;
+  values.resize(input.Vertices.rows(), takesVectors ? 2 : 1);
+  for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
+  {
+    const double noise = 0.4 * (UniformRandom(7, 0, static_cast<Index>(i)) - 0.5);
+    const double x = input.Vertices(i, 0);
+    values(i, 0) = takesVectors ? std::cos(x + noise) : (x > 0.1) + noise;
+    values(i, takesVectors ? 1 : 0) = takesVectors ? std::sin(x + noise) : values(i, 0);
+  }
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  int sum = 0;
+  for (const StepRecord& record : run.GetBlock(0).Path->Records())
+  {
+    sum += record.Iterations;
+  }
+  return sum;
 }
 
 using Counts = std::map<SolverPurpose, long>;
@@ -122,6 +150,16 @@ TEST(Work, OfTheMumfordShahModelIsTwoFactorisationsPerStep)
 {
   EXPECT_EQ(FactorizationsOf(MumfordShahSettings()),
     (Counts{ { SolverPurpose::Step, NumberOfSteps }, { SolverPurpose::Edges, NumberOfSteps } }));
+}
+
+/// A factor has few entries there, while iterations on needles are many.
+TEST(Work, AroundAVertexOfAllTrianglesIsFewIterations)
+{
+  EXPECT_EQ(IterationsAroundAVertex(MumfordShahSettings()), 0);
+  EXPECT_EQ(IterationsAroundAVertex(TensorDiffusionSettings()), 0);
+  EXPECT_EQ(IterationsAroundAVertex(TotalVariationSettings()), 0);
+  EXPECT_LE(IterationsAroundAVertex(HarmonicMapSettings()), 80);
+  EXPECT_LE(IterationsAroundAVertex(SegmentationSettings()), 200);
 }
 
 /// Lanczos' method reaches 1e-9 in few steps, also where the next eigenvalue is 10 % larger.

@@ -249,13 +249,15 @@ std::vector<char> FindSelfIntersections(const Points& points, const Triangles& t
   const auto find = [&](Index t)
   {
     TriangleStars::Box box;
-    for (int a = 0; a < 3; ++a)
+    Slabs::Corners corners;
+    for (std::size_t a = 0; a < 3; ++a)
     {
-      box.extend(points.row(triangles(t, a)).transpose());
+      corners[a] = points.row(triangles(t, static_cast<int>(a))).transpose();
+      box.extend(corners[a]);
     }
     char& found = crosses[static_cast<std::size_t>(t)];
     tree.VisitMeeting(
-      t, [&](const TriangleStars::Box& other) { return !found && box.intersects(other); },
+      t, corners, [&](const TriangleStars::Box& other) { return !found && box.intersects(other); },
       [&](Index u)
       {
         if (!found && u != t)

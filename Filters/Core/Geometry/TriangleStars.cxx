@@ -3,6 +3,7 @@
 #include "Core/Geometry/TriangleStars.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -19,14 +20,22 @@ using Centre = std::pair<Index, Index>;
 
 /// Per triangle, the edge of many triangles that it is at, otherwise the vertex of many, otherwise
 /// two numbers below 0.
-std::vector<Centre> FindCentres(const Triangles& triangles, Index numberOfPoints)
+std::vector<Centre> FindCentres(const Triangles& triangles, const Points& points)
 {
-  std::vector<Index> valence(static_cast<std::size_t>(numberOfPoints), 0);
+  std::vector<Index> valence(static_cast<std::size_t>(points.rows()), 0);
   for (Eigen::Index k = 0; k < triangles.size(); ++k)
   {
     ++valence[static_cast<std::size_t>(triangles.data()[k])];
   }
   const auto isLarge = [&](Index v) { return valence[static_cast<std::size_t>(v)] > LargestStar; };
+  std::map<std::array<double, 3>, Index> firstAt; // the first of them at a place
+  for (Index v = 0; v < static_cast<Index>(points.rows()); ++v)
+  {
+    if (isLarge(v))
+    {
+      firstAt.emplace(std::array<double, 3>{ points(v, 0), points(v, 1), points(v, 2) }, v);
+    }
+  }
   const auto count = static_cast<Index>(triangles.rows());
   std::vector<Centre> centres(static_cast<std::size_t>(count), Centre(-1, -1));
   std::vector<std::pair<Centre, Index>> edges; // with their triangles
@@ -38,7 +47,8 @@ std::vector<Centre> FindCentres(const Triangles& triangles, Index numberOfPoints
       const Index q = triangles(t, (a + 1) % 3);
       if (isLarge(p))
       {
-        centres[static_cast<std::size_t>(t)] = { p, p };
+        const Index first = firstAt.at({ points(p, 0), points(p, 1), points(p, 2) });
+        centres[static_cast<std::size_t>(t)] = { first, first };
         if (isLarge(q))
         {
           edges.emplace_back(std::minmax(p, q), t);
@@ -70,7 +80,7 @@ Points ArcsAround(Index centre, const Points& points, const Triangles& triangles
     int row = 0;
     for (int a = 0; a < 3; ++a)
     {
-      if (triangles(t, a) != centre && row < 2)
+      if (points.row(triangles(t, a)) != points.row(centre) && row < 2)
       {
         arcs.row(3 * t + row++) =
           (points.row(triangles(t, a)) - points.row(centre)).stableNormalized();
@@ -94,7 +104,7 @@ TriangleStars::TriangleStars(const Points& points, const Triangles& triangles)
   : StarOf(static_cast<std::size_t>(triangles.rows()), 0)
   , PlaceOf(static_cast<std::size_t>(triangles.rows()), 0)
 {
-  const std::vector<Centre> centres = FindCentres(triangles, static_cast<Index>(points.rows()));
+  const std::vector<Centre> centres = FindCentres(triangles, points);
   std::map<Centre, Index> numbers{ { Centre(-1, -1), 0 } };
   std::vector<std::vector<Index>> members(1);
   for (std::size_t t = 0; t < centres.size(); ++t)
@@ -128,8 +138,10 @@ TriangleStars::TriangleStars(const Points& points, const Triangles& triangles)
     const bool hasArcs = s > 0 && centreOf[s].first == centreOf[s].second;
     Points arcs = hasArcs ? ArcsAround(centreOf[s].first, points, part) : Points(0, 3);
     const TriangleTree arcBoxes(arcs, hasArcs ? corners : Triangles(0, 3));
+    const Eigen::Vector3d centre =
+      hasArcs ? points.row(centreOf[s].first).transpose() : Eigen::Vector3d::Zero().eval();
     this->Stars.push_back(
-      { std::move(members[s]), TriangleTree(points, part), std::move(arcs), arcBoxes });
+      { std::move(members[s]), TriangleTree(points, part), centre, std::move(arcs), arcBoxes });
   }
   std::vector<Box> bounds;
   for (const Star& star : this->Stars)

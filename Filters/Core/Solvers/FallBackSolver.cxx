@@ -3,6 +3,7 @@
 #include "Core/Solvers/FallBackSolver.h"
 
 #include "Core/Operators/SparsePattern.h"
+#include "Core/Solvers/NestedDissection.h"
 #include "Core/Solvers/StrongLines.h"
 
 #include <algorithm>
@@ -61,8 +62,10 @@ void FallBackSolver::SetMatrix(const SparseMatrix& matrix, const ProgressMonitor
   if (this->Patience > 0)
   {
     this->MeasureRows(matrix);
-    const bool hasNeedles = HasUnresolvedNeedles(
-      this->Diagonal, this->RowSums, this->Limits.Tolerance, this->Parallel, *this->OverProcesses);
+    const bool hasNeedles = (this->Patience < std::numeric_limits<int>::max() &&
+                              IsAroundHubs(matrix, *this->OverProcesses)) ||
+      HasUnresolvedNeedles(this->Diagonal, this->RowSums, this->Limits.Tolerance, this->Parallel,
+        *this->OverProcesses);
     const double forecast = this->TakeForecast(matrix);
     const bool isHopeless = forecast > this->Patience;
     begin = isHopeless ? 1 : 0;

@@ -18,7 +18,8 @@ namespace SurfaceDiffusion
 /// rate of convergence lets expect more iterations than that (ConvergenceForecast), and later
 /// solves begin with the next method. If the matrix lets forecast that many iterations of conjugate
 /// gradients (ForecastOf), all solves do, and the first one is the trial of the next method. On
-/// needles that nothing but a factorisation resolves, this is the first method at once. All this
+/// needles that nothing but a factorisation resolves, this is the first method at once; also around
+/// hubs, where the factor has few entries (IsAroundHubs), unless the patience has no limit. All this
 /// depends on the matrix and the first right-hand side only: if later failures were remembered, the
 /// bits of a step would depend on the steps computed before it.
 class FallBackSolver : public LinearSolver

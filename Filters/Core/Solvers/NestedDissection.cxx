@@ -262,4 +262,18 @@ bool IsRegular(const SparseMatrix& matrix)
   return regular >= nearlyAll * static_cast<double>(matrix.rows());
 }
 
+bool IsAroundHubs(const SparseMatrix& matrix, const Reduction& overProcesses)
+{
+  constexpr double most = 0.5;
+  constexpr Index many = 64; // of entries; poles of spheres have more, but few neighbours in all
+  const Index* const outer = matrix.outerIndexPtr();
+  double ofHubs = 0.0;
+  for (Index i = 0; i < static_cast<Index>(matrix.rows()); ++i)
+  {
+    const Index entries = outer[i + 1] - outer[i];
+    ofHubs += entries > many ? entries : 0.0;
+  }
+  return overProcesses.Sum(ofHubs) > most * overProcesses.Sum(static_cast<double>(matrix.rows()));
+}
+
 } // namespace SurfaceDiffusion

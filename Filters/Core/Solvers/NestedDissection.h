@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Reduction.h"
 #include "Core/Foundation/Types.h"
 
 #include <vector>
@@ -22,5 +23,10 @@ std::vector<Index> NestedDissection(const SparseMatrix& matrix);
 
 /// Whether nearly every row has the diagonal and six other entries, as on regular triangulations.
 bool IsRegular(const SparseMatrix& matrix);
+
+/// Whether most rows have an entry in rows with many of them, as around vertices and edges of many
+/// triangles. Without these the others are lines, and the factor has few entries, while triangles
+/// are needles, on which iterations fail. The same on all processes that have rows of the matrix.
+bool IsAroundHubs(const SparseMatrix& matrix, const Reduction& overProcesses = Reduction::Serial());
 
 } // namespace SurfaceDiffusion

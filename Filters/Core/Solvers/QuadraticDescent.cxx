@@ -4,6 +4,8 @@
 
 #include "Core/Operators/SparsePattern.h"
 #include "Core/Solvers/ConjugateGradients.h"
+#include "Core/Solvers/NestedDissection.h"
+#include "Core/Solvers/NotPositiveDefinite.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +63,12 @@ void QuadraticDescent::SetMatrix(
     reduction.Accumulate(this->InverseDiagonals);
     this->InverseDiagonals = this->InverseDiagonals.cwiseInverse();
     this->HasSingle = false;
+    this->HasFactor = false;
+    return;
+  }
+  this->HasFactor = reduction.IsSerial() && IsAroundHubs(matrix) && this->Factorize(matrix);
+  if (this->HasFactor)
+  {
     return;
   }
   reduction.Accumulate(this->InverseDiagonal);
@@ -71,6 +79,24 @@ void QuadraticDescent::SetMatrix(
   if (this->HasSingle)
   {
     this->Single.SetMatrix(matrix, this->InverseDiagonal, this->Lines);
+  }
+}
+
+/// False if it cannot.
+bool QuadraticDescent::Factorize(const SparseMatrix& matrix)
+{
+  if (!this->Factor)
+  {
+    this->Factor = MakeCholeskySolver(this->Parallel);
+  }
+  try
+  {
+    this->Factor->SetMatrix(matrix);
+    return true;
+  }
+  catch (const NotPositiveDefinite&)
+  {
+    return false;
   }
 }
 
@@ -106,6 +132,13 @@ bool QuadraticDescent::ImproveInSinglePrecision(
 
 void QuadraticDescent::Improve(Values& x, double reduction, int maximumNumberOfIterations)
 {
+  if (this->HasFactor)
+  {
+    this->Factor->Precondition(this->Residual, this->Change);
+    x += this->Change;
+    this->Residual.setZero();
+    return;
+  }
   if (this->HasSingle && this->ImproveInSinglePrecision(x, reduction, maximumNumberOfIterations))
   {
     return;

@@ -4,13 +4,17 @@
 
 #include "Core/Foundation/Parallel.h"
 #include "Core/Solvers/ConjugateGradientSystem.h"
+#include "Core/Solvers/LinearSolver.h"
 #include "Core/Solvers/SinglePrecisionSolver.h"
+
+#include <memory>
 
 namespace SurfaceDiffusion
 {
 
 /// Minimises 1/2 x.Ax - b.x by a few conjugate gradient iterations with the preconditioner
-/// StrongLines, with shifts that of Jacobi, as the inner iteration of an outer one that changes b a
+/// StrongLines, with shifts that of Jacobi, or around hubs (IsAroundHubs) with a factorisation of
+/// the matrix without shifts, as the inner iteration of an outer one that changes b a
 /// little from call to call and carries x along. Unlike a LinearSolver it keeps the residual
 /// between calls, so that no product is spent on computing it.
 class QuadraticDescent
@@ -47,6 +51,7 @@ public:
   void Improve(Values& x, double reduction, int maximumNumberOfIterations);
 
 private:
+  bool Factorize(const SparseMatrix& matrix);
   bool ImproveInSinglePrecision(Values& x, double reduction, int maximumNumberOfIterations);
   template <typename System>
   void Improve(const System& system, Values& x, double reduction, int maximumNumberOfIterations);
@@ -63,6 +68,9 @@ private:
   bool IsSingle = false;
   SinglePrecisionSolver Single; ///< of the matrix if HasSingle
   bool HasSingle = false;
+  std::unique_ptr<LinearSolver> Factor; ///< of the matrix if HasFactor
+  bool HasFactor = false;
+  Values Change;
   ColumnSums Squares;
   std::vector<double> Lengths;
 };

@@ -153,6 +153,7 @@ private:
       [](const Side& a, const Side& b)
       { return std::tie(a.Low, a.High, a.Number) < std::tie(b.Low, b.High, b.Number); });
     this->Next.resize(sides.size());
+    this->Previous.resize(sides.size());
     this->SideEdge.resize(sides.size());
     for (const Side& side : sides)
     {
@@ -167,19 +168,36 @@ private:
 
   void Attach(Offset side, Index edge)
   {
+    Offset& first = this->Edges[static_cast<std::size_t>(edge)].First;
     this->SideEdge[static_cast<std::size_t>(side)] = edge;
-    this->Next[static_cast<std::size_t>(side)] = this->Edges[static_cast<std::size_t>(edge)].First;
-    this->Edges[static_cast<std::size_t>(edge)].First = side;
+    this->Link(side, first);
+    this->Previous[static_cast<std::size_t>(side)] = -1;
+    first = side;
   }
 
   void Detach(Offset side, Index edge)
   {
-    Offset* link = &this->Edges[static_cast<std::size_t>(edge)].First;
-    while (*link != side)
+    const Offset next = this->Next[static_cast<std::size_t>(side)];
+    const Offset previous = this->Previous[static_cast<std::size_t>(side)];
+    if (previous >= 0)
     {
-      link = &this->Next[static_cast<std::size_t>(*link)];
+      this->Link(previous, next);
+      return;
     }
-    *link = this->Next[static_cast<std::size_t>(side)];
+    this->Edges[static_cast<std::size_t>(edge)].First = next;
+    if (next >= 0)
+    {
+      this->Previous[static_cast<std::size_t>(next)] = -1;
+    }
+  }
+
+  void Link(Offset side, Offset next)
+  {
+    this->Next[static_cast<std::size_t>(side)] = next;
+    if (next >= 0)
+    {
+      this->Previous[static_cast<std::size_t>(next)] = side;
+    }
   }
 
   double SquaredLength(const Edge& edge) const
@@ -270,6 +288,7 @@ private:
       this->Corners.push_back(corners);
       this->Origin.push_back(this->Origin[t]);
       this->Next.resize(this->Next.size() + 3);
+      this->Previous.resize(this->Previous.size() + 3);
       this->SideEdge.resize(this->SideEdge.size() + 3);
 
       this->Attach(side, startsLow ? edge : upper);
@@ -309,6 +328,7 @@ private:
   std::vector<Index> Origin;
   std::vector<Edge> Edges;
   std::vector<Offset> Next; ///< the next side on the same edge, -1 at the end
+  std::vector<Offset> Previous; ///< the one before it, -1 at the begin
   std::vector<Index> SideEdge;
   /// Per vertex, the last middle that it was joined to, and the edge.
   std::vector<std::pair<Index, Index>> JoinedTo;

@@ -3,6 +3,7 @@
 #include "Core/Models/Harmonic/TangentMethods.h"
 
 #include "Core/Operators/SparsePattern.h"
+#include "Core/Solvers/NestedDissection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,6 +73,10 @@ const std::vector<TangentMethods::Preconditioner>& TangentMethods::Methods(
     case Preconditioner::Multigrid:
       return multigrid;
     default:
+      if (IsAroundHubs(tangent.Matrix, tangent.Reduction))
+      {
+        return factor;
+      }
       return this->PrefersMultigrid(tangent) ? multigrid : noise;
   }
 }
@@ -103,7 +108,9 @@ SolveReport TangentMethods::Solve(ImplicitSystem& system, const TangentSystem& t
     }
     catch (const std::runtime_error&)
     {
-      if (method == methods.front() && method != Preconditioner::Multigrid)
+      const bool isTrial = method == Preconditioner::Multigrid ||
+        (method == Preconditioner::Factor && this->Method == Preconditioner::Automatic);
+      if (method == methods.front() && !isTrial)
       {
         throw;
       }

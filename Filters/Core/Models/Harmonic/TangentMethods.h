@@ -21,7 +21,9 @@ public:
   /// smooth maps and large steps, while for noise Jacobi is fast.
   enum class Preconditioner
   {
-    Automatic, ///< as Multigrid in one process if diffusion dominates, else Jacobi, Factor
+    /// As Factor around hubs, as Multigrid in one process if diffusion dominates, else Jacobi,
+    /// Factor
+    Automatic,
     Factor, ///< Factor, Jacobi
     Multigrid, ///< Multigrid, Jacobi, Factor
     Jacobi

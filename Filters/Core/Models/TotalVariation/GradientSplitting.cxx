@@ -19,11 +19,27 @@ namespace
 /// gap of 1e-3, 28 to 50 to 1e-5, the more so the more vertices.
 constexpr double PenaltyFactor = 28.0;
 
+/// No penalty suits both directions of a needle. That of the steepest gradient, which is across it,
+/// is too small along it, where a multiplier then needs thousands of iterations to become 1. On
+/// triangles where the square of this gradient is more than this many times that of the geometric
+/// mean of both directions, the penalty is that of the mean. Measured on segmentations of fans of
+/// 20,000 triangles: with SquaredWidths() of vertices, a tenth of the iterations.
+constexpr double LargestRatio = 16.0;
+
 /// The largest |S grad phi|^2 of the basis functions.
 double SquaredSteepest(const GradientMap& map)
 {
   return std::max({ map.OfCorner(0).squaredNorm(), map.OfCorner(1).squaredNorm(),
     map.OfCorner(2).squaredNorm() });
+}
+
+/// That of the penalty.
+double SquaredTypical(const GradientMap& map)
+{
+  const double area = std::abs(map.First[0] * map.Second[1] - map.First[1] * map.Second[0]);
+  const double mean = 2.0 / std::sqrt(3.0) * area; // that of equilateral triangles
+  const double steepest = SquaredSteepest(map);
+  return steepest > LargestRatio * mean ? mean : steepest;
 }
 
 } // namespace
@@ -46,7 +62,7 @@ GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
   ForEach(parallel, this->Mesh->NumberOfTriangles(),
     [&](Index t)
     {
-      const double g = function(ranges[t] * ranges[t] * SquaredSteepest((*this->Gradients)[t]));
+      const double g = function(ranges[t] * ranges[t] * SquaredTypical((*this->Gradients)[t]));
       this->Penalty[t] = PenaltyFactor * perUnknown * g * this->Mesh->Shapes()[t].Area();
     });
 }

@@ -50,4 +50,23 @@ Vector RangesOfVertices(
   return ranges.cwiseQuotient(areas);
 }
 
+Vector SquaredWidths(const TriangleMesh& mesh, const ParallelFor& parallel)
+{
+  // Of the area over the longest edge; an even cell is half as wide as this.
+  constexpr double most = 3.0;
+  Vector lengths(mesh.NumberOfTriangles());
+  ForEach(parallel, mesh.NumberOfTriangles(),
+    [&](Index t)
+    {
+      const TriangleMesh::Shape shape = mesh.Shapes()[t];
+      const double length =
+        std::max({ shape.EdgeLength(0), shape.EdgeLength(1), shape.EdgeLength(2) });
+      lengths[t] = length * length;
+    });
+  const Vector squares = RangesOfVertices(mesh, lengths, parallel);
+  Vector storage;
+  const Vector& areas = mesh.GetReduction().Accumulated(mesh.ControlAreas(), storage);
+  return areas.array().min(most * most * areas.array().square() / squares.array());
+}
+
 } // namespace SurfaceDiffusion

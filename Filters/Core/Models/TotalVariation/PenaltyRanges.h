@@ -20,4 +20,8 @@ Vector RangesOfTriangles(const TriangleMesh& mesh, const Eigen::Ref<const Values
 Vector RangesOfVertices(
   const TriangleMesh& mesh, const Vector& ofTriangles, const ParallelFor& parallel);
 
+/// The square of the width of each vertex' control cell, for the penalties there: its area, but on
+/// needles that of a cell as wide as they are.
+Vector SquaredWidths(const TriangleMesh& mesh, const ParallelFor& parallel);
+
 } // namespace SurfaceDiffusion

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/TotalVariation/SimplexSplitting.h"
 
+#include "Core/Models/TotalVariation/PenaltyRanges.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -68,10 +70,11 @@ SimplexSplitting::SimplexSplitting(std::shared_ptr<const TriangleMesh> mesh, Fla
   double typicalCost, const ParallelFor& parallel)
   : VertexTerms(std::move(mesh), std::move(fixed), parallel)
 {
+  const Vector squaredWidths = SquaredWidths(*this->Mesh, parallel);
   ForEach(parallel, this->NumberOfVertices(),
     [&](Index i)
     {
-      this->Penalty[i] = PenaltyOfDifferences * std::sqrt(this->Areas[i]) +
+      this->Penalty[i] = PenaltyOfDifferences * std::sqrt(squaredWidths[i]) +
         PenaltyOfCosts * typicalCost * this->Areas[i];
     });
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/TotalVariation/VertexSplitting.h"
 
+#include "Core/Models/TotalVariation/PenaltyRanges.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -28,12 +30,18 @@ VertexSplitting::VertexSplitting(std::shared_ptr<const TriangleMesh> mesh, Value
   , Options(settings)
   , HasAbsolute((this->Absolute.array() > 0.0).any())
 {
+  if (!this->OverProcesses.Any(this->HasAbsolute))
+  {
+    this->Penalty.setZero();
+    return;
+  }
+  const Vector squaredWidths = SquaredWidths(*this->Mesh, parallel);
   ForEach(parallel, this->NumberOfVertices(),
     [&](Index i)
     {
       const double nu = this->Absolute[i] * this->Areas[i];
       this->Penalty[i] = nu > 0.0
-        ? PenaltyOfGradients * settings.Function(ranges[i] * ranges[i] / this->Areas[i]) +
+        ? PenaltyOfGradients * settings.Function(ranges[i] * ranges[i] / squaredWidths[i]) +
           PenaltyOfFidelity * nu / ranges[i]
         : 0.0;
     });
