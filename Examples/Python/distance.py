@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compute distances along a scan from two points, and the arrival times of a front with two speeds.
 
-    distance.py [scan.off]
+    distance.py [scan.off | --quick]
 
 The program draws isolines of the distances along the edges of the scan (Dijkstra's algorithm, as
 vtkDijkstraGraphGeodesicPath has it), by fast marching and by the heat method, and those of the arrival
 times of a front that is four times as slow on one half. It fails unless the edges give the longest ways,
 and prints the errors of all three on a sphere, where the distances are known. It writes distance.png.
+--quick: a small generated surface.
 
 Try next: a line or a region as sources, and the array NearestSource, which divides the scan.
 """
@@ -112,20 +113,23 @@ def draw(scan, name, view):
 
 
 def main():
+    quick = sys.argv[1:] == ["--quick"]
     folder = os.environ.get("SURFACEDIFFUSION_MESH_DIR")
-    if len(sys.argv) > 1:
+    if quick:
+        name, scan, view = "pebble", pebble(), (0, 0, 1)
+    elif len(sys.argv) > 1:
         name, scan, view = Path(sys.argv[1]).stem, read_mesh(Path(sys.argv[1])), (0, 0, 1)
     elif folder:
         name, scan, view = "bunny", read_mesh(Path(folder) / "bunny00.off"), (0, 0, 1)
     else:
         name, scan, view = "pebble", refined(pebble(), 5_000), (0, 0, 1)
-    for size in (2_000, 10_000):
+    for size in (2_000,) if quick else (2_000, 10_000):
         print_errors_on_a_sphere(size)
     panels = draw(scan, name, view)
     if display_missing():
         print("  no picture: there is no display")
     else:
-        save_picture("distance.png", panels, 4, (380, 360))
+        save_picture("distance.png", panels, 4, (200, 200) if quick else (380, 360))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Remove the noise of the points of CAD shapes and of scans, independent, impulsive and correlated.
 
-    mesh_denoising.py
+    mesh_denoising.py [--quick]
 
 The points of the surfaces get noise whose standard deviation is a fraction of the mean edge length
 h: Gaussian noise along the normals, of all points or, impulsive noise, of half of them.
@@ -24,7 +24,8 @@ cameras is. In a coarser image, where shapes are not smooth over sixteen edges, 
 them, is not found, and stays.
 
 The other surfaces are those of libcgal-demo in the folder SURFACEDIFFUSION_MESH_DIR. If that is not
-set, a cube takes the place of the CAD shapes.
+set, a cube takes the place of the CAD shapes. --quick: small pictures, the second one without
+the depth image.
 
 Try next: SetNoiseLevel(), if too little or too much is removed; SetSurfaceTypeToOrganic() for the CAD
 shape, which rounds its edges.
@@ -255,6 +256,7 @@ def panels_of_distances(example, truth, columns, bar):
 
 
 def main():
+    quick = "--quick" in sys.argv[1:]
     folder = os.environ.get("SURFACEDIFFUSION_MESH_DIR")
     angles, distances = [], []
     for example in SURFACES:
@@ -264,13 +266,14 @@ def main():
             angles += panels_of_angles(example, truth, columns, bar=example is SURFACES[-1])
             if example is SURFACES[0]:
                 distances += panels_of_distances(example, truth, columns, bar=False)
-    distances += panels_of_distances(
-        DEPTH_IMAGE, *denoise(DEPTH_IMAGE, depth_image()), bar=True)
+    of_depth_image = denoise(DEPTH_IMAGE, depth_image())
+    if not quick:
+        distances += panels_of_distances(DEPTH_IMAGE, *of_depth_image, bar=True)
     if display_missing():
         print("no picture: there is no display")
     else:
-        save_picture("mesh_denoising.png", angles, 3, (440, 400))
-        save_picture("mesh_denoising_distance.png", distances, 4, (400, 380))
+        save_picture("mesh_denoising.png", angles, 3, (220, 200) if quick else (440, 400))
+        save_picture("mesh_denoising_distance.png", distances, 4, (220, 200) if quick else (400, 380))
 
 
 if __name__ == "__main__":

@@ -71,10 +71,11 @@ FIGURES = {
 
 # ---- surfaces with pictures ----------------------------------------------------------------------
 
-def painted(example, args):
-    """The surface of the row with its picture `clean`: one or three values per point."""
+def painted(example, args, quick_vertices=4_000):
+    """The surface of the row with its picture `clean`: one or three values per point. quick_vertices: with
+    more than so many if args.quick."""
     if args.quick:
-        surface = data.refined(data.pebble() if example.closed else data.half_pebble(), 4_000)
+        surface = data.refined(data.pebble() if example.closed else data.half_pebble(), quick_vertices)
         clean = data.patches(surface)
         if example.photo in GREY:
             clean = clean.mean(axis=1)

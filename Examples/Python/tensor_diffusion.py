@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Close interrupted stripes by coherence-enhancing diffusion.
 
-    tensor_diffusion.py [surface.off or .vtp]
+    tensor_diffusion.py [surface.off or .vtp | --quick]
 
 Two patterns are grown on surfaces as textures: stripes that wind around a scan along the directions
 of its curvature, and a pattern like a fingerprint on a closed surface. Both are interrupted by round
@@ -15,7 +15,7 @@ gaps and covered by noise. The program restores them by three kinds of diffusion
 
 It prints the correlation with the pattern before the damage, everywhere and in the gaps, and writes
 tensor_diffusion.png. Without an argument it takes scans of libcgal-demo from the folder
-SURFACEDIFFUSION_MESH_DIR, or a generated surface if that is not set.
+SURFACEDIFFUSION_MESH_DIR, or a generated surface if that is not set. --quick: a small generated one.
 
 Try next: SetContrast(0.05), at which gaps stay open; SetModelToEdgeEnhancing();
 DiffusionAxesOn(), which gives the directions that were found as cell data.
@@ -172,21 +172,25 @@ def panels_of(pattern, surface, shown, everywhere, inside):
 
 
 def main():
+    quick = sys.argv[1:] == ["--quick"]
     folder = os.environ.get("SURFACEDIFFUSION_MESH_DIR")
     panels = []
     for pattern in PATTERNS:
-        if len(sys.argv) > 1:
+        if quick:
+            surface = pebble()
+        elif len(sys.argv) > 1:
             surface = read_mesh(Path(sys.argv[1]))
         elif folder:
             surface = read_mesh(Path(folder) / f"{pattern.mesh}.off")
         else:
             surface = pebble()
-        surface = refined(surface, VERTICES / 2 if folder or len(sys.argv) > 1 else VERTICES / 8)
+        given = not quick and (folder or len(sys.argv) > 1)
+        surface = refined(surface, VERTICES / 2 if given else VERTICES / 8)
         panels.extend(panels_of(pattern, *restore(surface, pattern)))
     if display_missing():
         print("no picture: there is no display")
     else:
-        save_picture("tensor_diffusion.png", panels, 5, (360, 360))
+        save_picture("tensor_diffusion.png", panels, 5, (200, 200) if quick else (360, 360))
 
 
 if __name__ == "__main__":

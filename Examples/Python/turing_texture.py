@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Grow textures on surfaces: figure 8 of the paper.
 
-    turing_texture.py [surface.off or .vtp]
+    turing_texture.py [surface.off or .vtp | --quick]
 
 Two chemicals react and diffuse, u1 much faster than u2, and a pattern grows out of noise:
 
@@ -16,7 +16,7 @@ of maximum curvature. For each texture the program prints the number of connecte
 > median} and their Euler number (components minus holes).
 
 Without arguments it takes scans of libcgal-demo from the folder SURFACEDIFFUSION_MESH_DIR, or a
-generated surface if that is not set. It writes turing_texture.png.
+generated surface if that is not set. --quick: a small generated one. It writes turing_texture.png.
 
 Try next: SetKineticsToGrayScott() and the others, with AutomaticTimeStepOn(); rates per cell (input
 array 4), which let spots grow along the body; GenerateTimeStepsOn(), which makes all times of the
@@ -111,17 +111,21 @@ def components_and_euler_number(surface, inside):
 
 
 def main():
+    quick = sys.argv[1:] == ["--quick"]
     folder = os.environ.get("SURFACEDIFFUSION_MESH_DIR")
     files = len(sys.argv) > 1 or folder
     panels = []
     for texture in TEXTURES:
-        if len(sys.argv) > 1:
+        if quick:
+            surface = pebble()
+        elif len(sys.argv) > 1:
             surface = read_mesh(sys.argv[1])
         elif folder:
             surface = read_mesh(Path(folder) / f"{texture.mesh}.off")
         else:
             surface = pebble()
-        surface = refined(surface, VERTICES / 2 if files else VERTICES / 8)
+        if not quick:
+            surface = refined(surface, VERTICES / 2 if files else VERTICES / 8)
         size = max(12 * mean_edge_length(surface), np.ptp(points_of(surface), axis=0).max() / 28)
         result, steps, seconds = grown(surface, texture, size)
         u1 = array_of(result, "u1")
@@ -135,7 +139,7 @@ def main():
     if display_missing():
         print("no picture: there is no display")
     else:
-        save_picture("turing_texture.png", panels, 4, (400, 400))
+        save_picture("turing_texture.png", panels, 4, (200, 200) if quick else (400, 400))
 
 
 if __name__ == "__main__":

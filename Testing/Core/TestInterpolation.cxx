@@ -541,7 +541,7 @@ TEST(Interpolation, KeepsTheRangeOfExactValuesInsideTriangles)
 TEST(Interpolation, KeepsTheRangeAroundABumpInAPlain)
 {
   // Nearly all of the surface is at the bound.
-  const Surface s = Icosphere(5);
+  const Surface s = Icosphere(4);
   const auto assembler = MakeAssembler(s);
   const TriangleMesh& mesh = assembler->Mesh();
   const auto f = [](const Eigen::RowVector3d& x)

@@ -159,7 +159,7 @@ TEST(Needles, MultigridFallsBackOnAFactorisation)
 // The last places of the solution leave more than the tolerance, and iterations do not change that.
 TEST(Needles, NoIterationsFollowAFactorisationWhoseResidualIsRoundOff)
 {
-  for (const Testing::Surface& surface : { TorusWithSeam(150), ContourOfGrid(150) })
+  for (const Testing::Surface& surface : { TorusWithSeam(90), ContourOfGrid(90) })
   {
     HeatSteps steps(surface, 100.0);
     steps.Task.NumberOfSolves = 100.0;

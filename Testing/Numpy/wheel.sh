@@ -55,15 +55,14 @@ environment/bin/pip install --quiet --no-compile "surfacediffusion[io,pyvista]" 
 # The same with other packages for surfaces, which that environment must do without
 if [ -d "$wheels/../peers" ]; then
   rm -rf peers
-  "${PYTHON:-/usr/bin/python3}" -m venv peers
+  "${PYTHON:-/usr/bin/python3}" -m venv --without-pip peers
   for site in environment/lib/python*/site-packages; do
     echo "$folder/$site" > "peers/${site#environment/}/environment.pth"
   done
-  peers/bin/pip install --quiet --no-compile --no-deps "$wheels"/../peers/*.whl "$wheels"/../brains/nilearn-*.whl
+  environment/bin/pip --python peers/bin/python install --quiet --no-compile --no-deps "$wheels"/../peers/*.whl "$wheels"/../brains/nilearn-*.whl
 fi
 
 rm -rf system
-"${PYTHON:-/usr/bin/python3}" -m venv --system-site-packages system
-system/bin/pip install --quiet --no-deps dist/*.whl
-system/bin/pip install --quiet --no-compile --no-deps --find-links "$wheels/.." \
-  pyvista==0.44.2 pooch scooby platformdirs typing_extensions
+"${PYTHON:-/usr/bin/python3}" -m venv --without-pip --system-site-packages system
+environment/bin/pip --python system/bin/python install --quiet --no-deps --no-compile \
+  --find-links "$wheels/.." dist/*.whl pyvista==0.44.2 pooch scooby platformdirs typing_extensions

@@ -8,7 +8,7 @@ folder=$2
 wheels=$3
 unset PYTHONPATH LD_LIBRARY_PATH
 rm -rf "$folder/environment"
-"$numpy/bin/python" -m venv "$folder/environment"
+"$numpy/bin/python" -m venv --without-pip "$folder/environment"
 packages=$("$folder/environment/bin/python" -c "import site; print(site.getsitepackages()[0])")
 "$numpy/bin/python" -c "import site; print(site.getsitepackages()[0])" > "$packages/numpy.pth"
 if [ ! -d "$wheels/web" ]; then
@@ -16,5 +16,5 @@ if [ ! -d "$wheels/web" ]; then
   exit 0
 fi
 PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 \
-  "$folder/environment/bin/pip" install --quiet --no-index --no-compile \
+  "$numpy/bin/pip" --python "$folder/environment/bin/python" install --quiet --no-index --no-compile \
   --find-links "$wheels/web" --find-links "$wheels/numpy" trame trame-vtk trame-vuetify selenium
