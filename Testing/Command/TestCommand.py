@@ -74,10 +74,6 @@ class Smooth(CommandTest):
         self.succeed(f"smooth lh.surf.gii lh.func.gii {2 * (8 * np.log(2))**0.5} b.func.gii")
         np.testing.assert_allclose(self.column("a.func.gii"), self.column("b.func.gii"), 1e-6)
 
-    def test_the_integral_is_kept(self):
-        for row in self.report("smooth lh.surf.gii lh.func.gii 5 out.func.gii")["columns"]:
-            self.assertAlmostEqual(row["total_after"] / row["total_before"], 1, delta=1e-6)
-
     def test_nan_and_zeros_are_missing(self):
         holes = np.arange(N) % 5 == 0
         samples.write_gifti("nan.func.gii", {"one": np.where(holes, np.nan, SMOOTH)})
@@ -179,15 +175,6 @@ class Smooth(CommandTest):
         line = "smooth lh.surf.gii lh.func.gii 8 out.func.gii --areas areas.func.gii"
         for row in self.report(line)["columns"]:
             self.assertAlmostEqual(row["total_after"] / row["total_before"], 1, delta=1e-6)
-
-    def test_more_steps_approach_the_solution(self):
-        errors = []
-        exact = heat(self.surface, NOISE, fwhm=5, number_of_time_steps=300)
-        for steps in (1, 30):
-            self.succeed(f"smooth lh.surf.gii lh.func.gii 5 out.func.gii --steps {steps}")
-            errors.append(np.abs(self.column("out.func.gii") - exact).max())
-        self.assertLess(errors[0], 0.003)  # of noise of 1
-        self.assertGreater(errors[0], 3 * errors[1])
 
 
 class OtherCommands(CommandTest):

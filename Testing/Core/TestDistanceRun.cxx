@@ -233,6 +233,25 @@ TEST(DistanceRun, OfTwoSpeedsAddsUpAcrossThem)
     const double x = strip.Vertices(i, 0);
     EXPECT_NEAR(found.Result(i, 0), x < 2.0 ? x / 0.5 : 4.0 + (x - 2.0) / 4.0, 1e-12);
   }
+  SurfaceData marked = data;
+  marked.Data.Values = Values::Zero(strip.Vertices.rows(), 1);
+  for (const auto& [point, mark] : side)
+  {
+    marked.Data.Values(point, 0) = mark;
+  }
+  DistanceSettings settings;
+  settings.Method = DistanceMethod::Eikonal;
+  settings.ComputeGradient = true;
+  const Values gradient =
+    Distance(strip.Vertices, strip.Faces, marked, settings).Arrays.at("ArrivalTimeGradient");
+  for (Index i = 0; i < strip.NumberOfVertices(); ++i)
+  {
+    const double x = strip.Vertices(i, 0);
+    if (std::abs(x - 2.0) > 1e-9)
+    {
+      EXPECT_NEAR(gradient(i, 0), x < 2.0 ? 2.0 : 0.25, 1e-12);
+    }
+  }
   // Start times add up, too.
   data.StartTimes.assign(static_cast<std::size_t>(strip.NumberOfVertices()), -3.0);
   EXPECT_LT((From(strip, side, data).Result - found.Result).array().abs().maxCoeff() - 3.0, 1e-12);

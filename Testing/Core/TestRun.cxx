@@ -6,6 +6,7 @@
 
 #include "Run/DirectionFieldRun.h"
 #include "Run/HeatSettings.h"
+#include "Run/OwnedSettings.h"
 #include "Run/Run.h"
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
@@ -19,6 +20,7 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -68,25 +70,30 @@ TEST(Run, AutomaticFidelityLeavesTheNoiseInTheModelThatRuns)
   TotalVariationSettings settings;
   settings.AutomaticFidelity = true;
   settings.NoiseLevel = 0.1;
-  for (const TotalVariationMode mode :
-    { TotalVariationMode::TimeSteps, TotalVariationMode::SteadyState })
+  for (const EdgeFunctionKind edge :
+    { EdgeFunctionKind::TotalVariation, EdgeFunctionKind::Charbonnier })
   {
-    for (const Discretization discretization :
-      { Discretization::Linear, Discretization::CrouzeixRaviart })
+    settings.EdgeFunction = edge;
+    for (const TotalVariationMode mode :
+      { TotalVariationMode::TimeSteps, TotalVariationMode::SteadyState })
     {
-      settings.Mode = mode;
-      settings.Discretization = discretization;
-      SurfaceDiffusion::Run run(SerialFor());
-      const Values state = StateOf(run, { input.Block() }, settings);
-      const TriangleMesh& mesh = run.GetBlock(0).Surface->Mesh();
-      Values difference = state;
-      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+      for (const Discretization discretization :
+        { Discretization::Linear, Discretization::CrouzeixRaviart })
       {
-        difference(i, 0) -= input.Data.Data.Values(mesh.InputVertex()[i], 0);
+        settings.Mode = mode;
+        settings.Discretization = discretization;
+        SurfaceDiffusion::Run run(SerialFor());
+        const Values state = StateOf(run, { input.Block() }, settings);
+        const TriangleMesh& mesh = run.GetBlock(0).Surface->Mesh();
+        Values difference = state;
+        for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+        {
+          difference(i, 0) -= input.Data.Data.Values(mesh.InputVertex()[i], 0);
+        }
+        EXPECT_NEAR(Testing::RootMeanSquare(mesh, difference), 0.1, 0.002)
+          << static_cast<int>(mode) << static_cast<int>(discretization);
+        EXPECT_TRUE(run.FindWarnings(Alone).empty());
       }
-      EXPECT_NEAR(Testing::RootMeanSquare(mesh, difference), 0.1, 0.002)
-        << static_cast<int>(mode) << static_cast<int>(discretization);
-      EXPECT_TRUE(run.FindWarnings(Alone).empty());
     }
   }
 }
@@ -472,6 +479,28 @@ TEST(Run, ATextureNeedsNoData)
   EXPECT_EQ(state.cols(), 2);
   EXPECT_TRUE(state.allFinite());
   EXPECT_GT(FindNumber(run.GetBlock(0).Outputs, "Wavelength"), 0.0);
+}
+
+TEST(Run, ATextureWithoutSteadyStateNeedsData)
+{
+  RunInput input(Testing::Icosphere(2));
+  input.Data.Data.Values.resize(0, 0);
+  for (const bool automatic : { false, true })
+  {
+    TextureSettings settings;
+    settings.AutomaticTimeStep = automatic;
+    WriteSetting(settings, "DecayRate", 17.0);
+    SurfaceDiffusion::Run run(SerialFor());
+    try
+    {
+      StateOf(run, { input.Block() }, settings);
+      FAIL();
+    }
+    catch (const std::runtime_error& error)
+    {
+      EXPECT_NE(std::string(error.what()).find("no steady state"), std::string::npos);
+    }
+  }
 }
 
 TEST(Run, SmoothingOfAMapWithHolesIsNotBiased)

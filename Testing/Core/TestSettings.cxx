@@ -250,6 +250,9 @@ TEST(Settings, PublishedTimesEndWithTheLastStep)
   EXPECT_EQ(settings.FindStep(1.9, 4), 3);
   EXPECT_EQ(settings.FindStep(2.0, 4), 4);
   EXPECT_EQ(settings.FindStep(3.5, 4), 4);
+  settings.OutputInterval = std::numeric_limits<int>::max();
+  EXPECT_EQ(settings.PublishedTimes(7), (std::vector<double>{ 0.0, 3.5 }));
+  EXPECT_EQ(settings.PublishedTimes(0), (std::vector<double>{ 0.0 }));
 }
 
 TEST(OwnedSettings, AreReadAndWrittenByNameAndType)

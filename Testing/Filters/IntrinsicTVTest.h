@@ -40,23 +40,4 @@ inline double Cap(const double* p)
 {
   return Height(p) > 0.5 ? 1.0 : 0.0;
 }
-
-inline void AddCap(vtkPolyData* sphere)
-{
-  AddPointArray(sphere, "f", 1, [&](vtkIdType i, int) { return Cap(sphere->GetPoint(i)); });
-  sphere->GetPointData()->SetActiveScalars("f");
-}
-
-inline double LargestMagnitude(vtkDataArray* array)
-{
-  double largest = 0.0;
-  for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-  {
-    for (int k = 0; k < array->GetNumberOfComponents(); ++k)
-    {
-      largest = std::max(largest, std::abs(array->GetComponent(i, k)));
-    }
-  }
-  return largest;
-}
 }

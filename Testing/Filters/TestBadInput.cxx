@@ -287,39 +287,6 @@ TEST(BadInput, GhostsAndIdsOfTheWrongSizeAreErrors)
     });
 }
 
-TEST(BadInput, BadPropertiesAreNamedWithTheirValueAndWhatIsAllowed)
-{
-  const std::vector<std::pair<double, const char*>> notPositive{ { 0.0, "0" }, { -1.5, "-1.5" },
-    { NaN, "nan" }, { Infinity, "inf" } };
-  const std::vector<std::pair<double, const char*>> negative{ { -1.5, "-1.5" }, { NaN, "nan" },
-    { Infinity, "inf" } };
-  using Filter = vtkFVMHeatFilter;
-  ExpectPropertyError<double>("TimeStep", &Filter::SetTimeStep, notPositive);
-  ExpectPropertyError<double>("FidelityWeight", &Filter::SetFidelityWeight, negative);
-  ExpectPropertyError<double>("AlongDiffusivity", &Filter::SetAlongDiffusivity, negative);
-  ExpectPropertyError<double>("AcrossDiffusivity", &Filter::SetAcrossDiffusivity, negative);
-  ExpectPropertyError<double>("MergeTolerance", &Filter::SetMergeTolerance, negative);
-  ExpectPropertyError<double>("FWHM", &Filter::SetFWHM, negative);
-  ExpectPropertyError<double>("NoiseLevel", &Filter::SetNoiseLevel, negative);
-  ExpectPropertyError<double>("Tolerance", &Filter::SetTolerance,
-    { { 0.0, "0" }, { 1.0, "1" }, { -1.0, "-1" }, { NaN, "nan" } });
-  ExpectPropertyError<int>("NumberOfTimeSteps", &Filter::SetNumberOfTimeSteps, { { -1, "-1" } });
-  ExpectPropertyError<int>(
-    "OutputInterval", &Filter::SetOutputInterval, { { 0, "0" }, { -2, "-2" } });
-  ExpectPropertyError<int>(
-    "MaximumNumberOfIterations", &Filter::SetMaximumNumberOfIterations, { { 0, "0" } });
-  ExpectPropertyError<int>(
-    "CheckpointMemoryLimit", &Filter::SetCheckpointMemoryLimit, { { -1, "-1" } });
-  ExpectPropertyError<int>("Units", &Filter::SetUnits, { { 2, "2" }, { -1, "-1" } });
-  ExpectPropertyError<int>("MaskMode", &Filter::SetMaskMode, { { 2, "2" } });
-  ExpectPropertyError<int>("InitialFill", &Filter::SetInitialFill, { { 4, "4" } });
-  ExpectPropertyError<int>("Solver", &Filter::SetSolver, { { 4, "4" } });
-  ExpectPropertyError<int>("OutputPrecision", &Filter::SetOutputPrecision, { { 3, "3" } });
-  ExpectPropertyError<int>("Mode", &Filter::SetMode, { { 2, "2" } });
-  ExpectPropertyError<int>("TimeIntegrator", &Filter::SetTimeIntegrator,
-    { { vtkFVMHeatFilter::TIME_INTEGRATOR_IMPLICIT, "2" } });
-}
-
 TEST(BadInput, AllProblemsAreReportedTogether)
 {
   ExpectError({ "TimeStep is -1", "Tolerance is 2", "nosuch" },
@@ -426,14 +393,4 @@ TEST(BadInput, HugeAndTinyTimesAndValuesGiveFiniteAnswersOrErrors)
       }
     }
   }
-}
-
-TEST(BadInput, TooFewIterationsAreAnErrorThatNamesARemedy)
-{
-  ExpectError({ "MaximumNumberOfIterations", "Tolerance" },
-    [](vtkFVMHeatFilter* filter, vtkPolyData*)
-    {
-      filter->SetSolverToConjugateGradient();
-      filter->SetMaximumNumberOfIterations(1);
-    });
 }

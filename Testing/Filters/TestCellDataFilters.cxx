@@ -7,9 +7,6 @@
 
 #include "vtkFVMHeatFilter.h"
 #include "vtkHarmonicMapFilter.h"
-#include "vtkIntrinsicTVFilter.h"
-#include "vtkMumfordShahFilter.h"
-#include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTuringTextureFilter.h"
 
 #include "vtkCellArray.h"
@@ -19,14 +16,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 using namespace FilterTest;
 
 namespace
 {
-
-constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Value>
 vtkDataArray* AddCellArray(
@@ -159,22 +153,6 @@ TEST(CellDataFilters, TotalsOfQuadsAndStripsAreKeptAndOtherCellsKeepTheirValue)
   }
 }
 
-TEST(CellDataFilters, ModelsThatChangeNothingReturnTheBits)
-{
-  auto sphere = Sphere(3);
-  vtkDataArray* const f = AddCellArray(sphere, "c", 3, Rough);
-  auto heat = MakeFilter<vtkFVMHeatFilter>(sphere, "c");
-  heat->SetNumberOfTimeSteps(0);
-  heat->Update();
-  EXPECT_TRUE(Identical(CellResult(heat, "cDiffused"), f));
-  auto tv = MakeFilter<vtkIntrinsicTVFilter>(sphere, "c");
-  tv->SetGenerateTimeSteps(true);
-  UpdateAt(tv, 0.0);
-  EXPECT_TRUE(Identical(CellResult(tv, "cTV"), f));
-  UpdateAt(tv, 10.0);
-  EXPECT_FALSE(Identical(CellResult(tv, "cTV"), f));
-}
-
 TEST(CellDataFilters, TheirDetailComesAndGoesWithItsProperties)
 {
   auto sphere = Sphere(3);
@@ -205,87 +183,6 @@ TEST(CellDataFilters, TheirDetailComesAndGoesWithItsProperties)
     late->Update();
     EXPECT_TRUE(Identical(CellResult(late, "cDiffused"), kept));
   }
-}
-
-TEST(CellDataFilters, ColoursStayColoursAndKeepTheirAlpha)
-{
-  auto sphere = Sphere(3);
-  const auto color = [](vtkIdType i, int k) { return std::floor(127.5 + 127.0 * Rough(i, k)); };
-  vtkDataArray* const f = AddCellArray(sphere, "RGBA", 4, color, VTK_UNSIGNED_CHAR);
-  for (const bool onCells : { true, false })
-  {
-    auto tv = MakeFilter<vtkIntrinsicTVFilter>(sphere, "RGBA");
-    tv->SetResultOnCells(onCells);
-    tv->Update();
-    vtkDataArray* const result = onCells ? CellResult(tv, "RGBATV") : Result(tv, "RGBATV");
-    ASSERT_NE(result, nullptr);
-    EXPECT_EQ(result->GetDataType(), VTK_UNSIGNED_CHAR);
-    ASSERT_EQ(result->GetNumberOfComponents(), 4);
-    for (vtkIdType i = 0; i < result->GetNumberOfTuples(); ++i)
-    {
-      EXPECT_EQ(result->GetComponent(i, 3), onCells ? f->GetComponent(i, 3) : 255.0);
-    }
-  }
-}
-
-TEST(CellDataFilters, MumfordShahHasTheEdgesOnCells)
-{
-  auto plane = Grid(31, 31);
-  AddCellArray(plane, "c", 1, [](vtkIdType c, int) { return (c / 2) % 30 < 15 ? 0.0 : 1.0; });
-  auto shah = MakeFilter<vtkMumfordShahFilter>(plane, "c");
-  shah->Update();
-  ASSERT_NE(CellResult(shah, "cMumfordShah"), nullptr);
-  vtkDataArray* const edges = CellResult(shah, "Edges");
-  ASSERT_NE(edges, nullptr);
-  EXPECT_EQ(Result(shah, "Edges"), nullptr);
-  EXPECT_EQ(edges->GetNumberOfTuples(), plane->GetNumberOfCells());
-  EXPECT_GT(edges->GetComponent(2 * (30 * 15 + 15), 0), 0.6);
-  EXPECT_NEAR(shah->GetEdgeLength(), 30.0, 1.0);
-  const auto ofCells = Copy(edges);
-  shah->ResultOnCellsOff();
-  shah->Update();
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType c = 0; c < plane->GetNumberOfCells(); ++c)
-  {
-    plane->GetCellPoints(c, corners);
-    double mean = 0.0;
-    for (const vtkIdType i : *corners)
-    {
-      mean += Result(shah, "Edges")->GetComponent(i, 0) / 3.0;
-    }
-    EXPECT_NEAR(ofCells->GetComponent(c, 0), mean, 1e-14);
-  }
-}
-
-TEST(CellDataFilters, SegmentationLabelsCells)
-{
-  auto plane = Grid(31, 31);
-  AddCellArray(plane, "c", 1, [](vtkIdType c, int) { return (c / 2) % 30 < 15 ? 3.0 : 7.0; });
-  AddCellArray(
-    plane, "seeds", 1, [](vtkIdType c, int) { return c == 0 ? 2 : 0; }, VTK_INT);
-  auto segmentation = MakeFilter<vtkSurfaceSegmentationFilter>(plane, "c");
-  SetInputArray(segmentation, 6, "seeds", true);
-  segmentation->Update();
-  vtkDataArray* const labels = CellResult(segmentation, "RegionId");
-  ASSERT_NE(labels, nullptr);
-  EXPECT_EQ(segmentation->GetOutput()->GetCellData()->GetScalars(), labels);
-  vtkDataArray* const segmented = CellResult(segmentation, "cSegmented");
-  EXPECT_EQ(CellResult(segmentation, "RegionProbability")->GetNumberOfComponents(), 2);
-  EXPECT_EQ(labels->GetComponent(0, 0), 2.0);
-  for (vtkIdType c = 0; c < plane->GetNumberOfCells(); ++c)
-  {
-    const vtkIdType column = (c / 2) % 30;
-    // The points between the regions, a column of 15, have the value 5.
-    if (std::abs(column - 14.5) > 1.0)
-    {
-      EXPECT_EQ(labels->GetComponent(c, 0), column < 15 ? 2.0 : 1.0) << c;
-      EXPECT_NEAR(segmented->GetComponent(c, 0), column < 15 ? 3.0 : 7.0, 2.0 / 15.0);
-    }
-  }
-  segmentation->ResultOnCellsOff();
-  segmentation->Update();
-  EXPECT_EQ(CellResult(segmentation, "RegionId"), nullptr);
-  EXPECT_NE(Result(segmentation, "RegionId"), nullptr);
 }
 
 TEST(CellDataFilters, HarmonicMapsOfCellNormalsAreUnitVectorsWithTheRoleOfNormals)

@@ -58,50 +58,6 @@ double Encoded(double light)
 
 } // namespace
 
-TEST(ColorModels, NaturalSettingsAreTheAbsoluteOnesInTheirUnits)
-{
-  auto sphere = Sphere(3);
-  AddColors(sphere, 3.0);
-  const Setting cases[] = { [](Filter*) {},
-    [](Filter* f)
-    {
-      f->SetModeToSteadyState();
-      f->SetStopTolerance(1e-8); // the last bits of h decide in which iteration it stops
-    },
-    [](Filter* f) { f->SetChromaticityExponent(1.5); },
-    [](Filter* f) { f->SetEdgeFunctionToCharbonnier(); } };
-  for (const Setting& set : cases)
-  {
-    auto filter = MakeFilter(sphere);
-    filter->SetColorModelToChromaticityBrightness();
-    set(filter);
-    filter->SetTimeStep(0.3);
-    filter->SetNumberOfTimeSteps(3);
-    filter->SetBeta(1e-2);
-    filter->SetFidelityWeight(0.7);
-    filter->SetChromaticityWeight(1.5);
-    filter->SetTolerance(1e-12);
-    filter->Update();
-    const auto natural = Copy(Result(filter));
-    const double unit = filter->GetTimeUnit();
-    const double h = filter->GetMeanEdgeLength();
-    const double range = filter->GetValueRange();
-    const double p = filter->GetChromaticityExponent();
-    const bool tv = filter->GetEdgeFunction() == Filter::EDGE_FUNCTION_TOTAL_VARIATION;
-    filter->SetUnitsToAbsolute();
-    filter->SetTimeStep(0.3 * unit);
-    filter->SetBeta(1e-2 * range * range / (h * h));
-    filter->SetEdgeThreshold(0.1 * range / h);
-    filter->SetFidelityWeight(0.7 / unit);
-    filter->SetChromaticityWeight(
-      1.5 * (tv ? range * std::pow(h, p - 1.0) : range * range * std::pow(h, p - 2.0)));
-    filter->Update();
-    // Many alternations amplify the last bits of h.
-    EXPECT_LT(LargestDifference(natural, Result(filter)), filter->GetMode() ? 1e-5 : 1e-7)
-      << "case " << (&set - cases);
-  }
-}
-
 TEST(ColorModels, HeldColoursInpaintTheOthers)
 {
   auto sphere = Sphere(4);
@@ -237,35 +193,4 @@ TEST(ColorModels, ColoursOutsideTheRangeOfBytesAreClamped)
   }
   EXPECT_GE(low, 0.0);
   EXPECT_DOUBLE_EQ(high, 255.0);
-}
-
-TEST(ColorModels, OtherDataAndSettingsAreErrors)
-{
-  auto sphere = Sphere(2);
-  AddRough(sphere, 2);
-  const std::pair<Setting, const char*> cases[] = {
-    { [](Filter*) {}, "ColorModel is 1 but InputArray has 2 components" },
-    { [](Filter* f) { f->SetFidelityNormToL1(); }, "FidelityNorm is 1; allowed: 0 L2" },
-    { [](Filter* f)
-      {
-        f->SetModeToSteadyState();
-        f->SetBlurFWHM(1.0);
-      },
-      "ColorModel is 1; allowed: 0 RGB together with BlurFWHM" },
-    { [](Filter* f) { f->SetChromaWeight(0.0); }, "ChromaWeight is 0" },
-    { [](Filter* f) { f->SetChromaticityWeight(-1.0); }, "ChromaticityWeight is -1" },
-    { [](Filter* f) { f->SetChromaticityExponent(2.5); }, "ChromaticityExponent is 2.5" },
-    { [](Filter* f) { f->SetColorModel(3); }, "ColorModel is 3" },
-  };
-  for (const auto& [set, message] : cases)
-  {
-    auto filter = MakeFilter(sphere);
-    filter->SetColorModelToOpponent();
-    set(filter);
-    Messages messages(filter);
-    filter->Update();
-    EXPECT_EQ(Result(filter), nullptr);
-    ASSERT_EQ(messages.Errors.size(), 1u) << message;
-    EXPECT_NE(messages.Errors[0].find(message), std::string::npos) << messages.Errors[0];
-  }
 }

@@ -3,7 +3,6 @@
 #include "FilterTest.h"
 
 #include "vtkCellData.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkSurfaceCurvatureFilter.h"
 #include "vtkSurfaceDerivativesFilter.h"
 #include "vtkTriangle.h"
@@ -86,19 +85,6 @@ TEST(CurvatureFilter, OfASphereIsThatOfItsRadius)
   EXPECT_TRUE(filter->GetOutput()->GetPointData()->HasArray("MyShapeIndex"));
 }
 
-TEST(CurvatureFilter, NamesWhatIsNotAllowed)
-{
-  vtkNew<vtkSurfaceCurvatureFilter> filter;
-  filter->SetInputData(Plane());
-  filter->SetFWHM(-1.0);
-  Messages messages(filter);
-  filter->Update();
-  ASSERT_EQ(messages.Errors.size(), 1u);
-  EXPECT_NE(messages.Errors.front().find("FWHM is -1; allowed: "), std::string::npos)
-    << messages.Errors.front();
-  EXPECT_FALSE(filter->GetOutput()->GetPointData()->HasArray("MeanCurvature"));
-}
-
 TEST(DerivativesFilter, AreExactOnAPlaneOfQuadrilaterals)
 {
   vtkNew<vtkSurfaceDerivativesFilter> filter;
@@ -133,53 +119,6 @@ TEST(DerivativesFilter, AreExactOnAPlaneOfQuadrilaterals)
     EXPECT_NEAR(arrays->GetArray("tSpeed")->GetComponent(i, 0), 1.0 / std::sqrt(5.0), 1e-9);
     EXPECT_NEAR(arrays->GetArray("tConductionVelocity")->GetComponent(i, 0), 0.4, 1e-9);
   }
-}
-
-TEST(DerivativesFilter, TakesBlocksWithTheArray)
-{
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, Plane());
-  const auto bare = Plane();
-  bare->GetPointData()->RemoveArray("t");
-  blocks->SetBlock(1, bare);
-  vtkNew<vtkSurfaceDerivativesFilter> filter;
-  filter->SetInputData(blocks);
-  SetInputArray(filter, 0, "t");
-  Messages messages(filter);
-  filter->Update();
-  EXPECT_TRUE(messages.Errors.empty());
-  EXPECT_EQ(messages.Warnings.size(), 1u);
-  auto* const output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-  ASSERT_NE(output, nullptr);
-  const auto has = [&](unsigned int b)
-  { return vtkPolyData::SafeDownCast(output->GetBlock(b))->GetPointData()->HasArray("tGradient"); };
-  EXPECT_TRUE(has(0));
-  EXPECT_FALSE(has(1));
-}
-
-TEST(DerivativesFilter, ReadsArraysThatWereEditedInPlace)
-{
-  const auto plane = Plane();
-  vtkNew<vtkSurfaceDerivativesFilter> filter;
-  filter->SetInputData(plane);
-  SetInputArray(filter, 0, "t");
-  SetInputArray(filter, 1, "mask");
-  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return i == 60 ? 1.0 : 0.0; });
-  plane->GetPointData()->GetArray("t")->SetComponent(60, 0, 1e3); // behind the mask
-  filter->Update();
-  const auto at = [&](vtkIdType i, int c)
-  { return filter->GetOutput()->GetPointData()->GetArray("tGradient")->GetComponent(i, c); };
-  EXPECT_NEAR(at(61, 0), 2.0, 1e-12);
-  EXPECT_EQ(at(60, 0), 0.0);
-  plane->GetPointData()->GetArray("t")->SetComponent(3, 0, vtkMath::Nan());
-  plane->Modified();
-  filter->Update();
-  EXPECT_TRUE(std::isnan(at(3, 0)));
-  EXPECT_NEAR(at(4, 0), 2.0, 1e-12);
-  plane->GetPointData()->GetArray("t")->SetComponent(3, 0, 6.0);
-  plane->Modified();
-  filter->Update();
-  EXPECT_NEAR(at(3, 0), 2.0, 1e-12);
 }
 
 TEST(DerivativesFilter, NamesWhatIsNotAllowed)

@@ -5,7 +5,6 @@
 #include "vtkAppendPolyData.h"
 #include "vtkCellData.h"
 #include "vtkCylinderSource.h"
-#include "vtkFVMHeatFilter.h"
 #include "vtkStripper.h"
 #include "vtkSurfaceDirectionFieldFilter.h"
 
@@ -140,6 +139,9 @@ TEST(DirectionFieldFilter, HintsOnCellsSpreadOverTheSurface)
   filter->SetInputData(grid);
   filter->SetMethodToHints();
   EXPECT_NE(ErrorOf(filter).find("DirectionArray is not set"), std::string::npos);
+  filter->SetResultArrayName("");
+  EXPECT_NE(ErrorOf(filter).find("ResultArrayName is empty"), std::string::npos);
+  filter->SetResultArrayName("Direction");
   SetInputArray(filter, 2, "hints", true);
   EXPECT_EQ(WarningOf(filter), "");
   ExpectAlong(Direction(filter), X, 1e-9);
@@ -231,60 +233,4 @@ TEST(DirectionFieldFilter, PolygonsAndStripsGetOneDirectionEach)
   ofStrips->Update();
   ASSERT_LT(Direction(ofStrips)->GetNumberOfTuples(), 200);
   EXPECT_TRUE(AllFinite(Direction(ofStrips)));
-}
-
-TEST(DirectionFieldFilter, DirectsTheHeatFilter)
-{
-  auto cylinder = Cylinder();
-  AddRough(cylinder);
-  vtkNew<vtkSurfaceDirectionFieldFilter> directions;
-  directions->SetInputData(cylinder);
-  vtkNew<vtkFVMHeatFilter> heat;
-  heat->SetInputConnection(directions->GetOutputPort());
-  SetInputArray(heat, 0, "f");
-  SetInputArray(heat, 2, "Direction", true);
-  heat->SetAcrossDiffusivity(0.001);
-  heat->SetTimeStep(20.0);
-  heat->Update();
-  // Data that are constant along the axis and rough around it.
-  double along = 0.0;
-  double around = 0.0;
-  vtkDataArray* u = Result(heat);
-  for (vtkIdType i = 32; i < 64; ++i)
-  {
-    along += std::abs(u->GetComponent(i + 160, 0) - u->GetComponent(i, 0));
-    around += std::abs(u->GetComponent(32 + (i + 1) % 32, 0) - u->GetComponent(i, 0));
-  }
-  EXPECT_LT(along, 0.1 * around);
-}
-
-TEST(DirectionFieldFilter, RejectsInvalidSettings)
-{
-  auto sphere = Sphere(1);
-  using Change = void (*)(vtkSurfaceDirectionFieldFilter*);
-  const std::pair<Change, const char*> cases[] = {
-    { [](auto* f) { f->SetMethod(4); }, "Method is 4" },
-    { [](auto* f) { f->SetPrincipalDirection(-1); }, "PrincipalDirection is -1" },
-    { [](auto* f) { f->SetSmoothingLength(-2.0); }, "SmoothingLength is -2" },
-    { [](auto* f) { f->SetHintWeight(0.0); }, "HintWeight is 0" },
-    { [](auto* f) { f->SetAngle(std::nan("")); }, "Angle is nan" },
-    { [](auto* f) { f->SetMergeTolerance(-1.0); }, "MergeTolerance is -1" },
-    { [](auto* f) { f->SetResultArrayName(""); }, "ResultArrayName is empty" },
-  };
-  for (const auto& [change, message] : cases)
-  {
-    vtkNew<vtkSurfaceDirectionFieldFilter> filter;
-    filter->SetInputData(sphere);
-    change(filter);
-    const std::string error = ErrorOf(filter);
-    EXPECT_NE(error.find(message), std::string::npos) << error;
-  }
-  vtkNew<vtkSurfaceDirectionFieldFilter> filter;
-  vtkNew<vtkPolyData> empty;
-  filter->SetInputData(empty);
-  EXPECT_NE(ErrorOf(filter).find("the input is empty"), std::string::npos);
-  vtkNew<vtkPolyData> points;
-  points->SetPoints(sphere->GetPoints());
-  filter->SetInputData(points);
-  EXPECT_NE(ErrorOf(filter).find("the input has no polygons"), std::string::npos);
 }

@@ -4,16 +4,10 @@
 
 #include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
-#include "vtkHarmonicMapFilter.h"
-#include "vtkIdTypeArray.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkSOADataArrayTemplate.h"
-#include "vtkSurfaceDirectionFieldFilter.h"
-#include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
-
-#include <set>
 
 using namespace FilterTest;
 
@@ -38,19 +32,23 @@ bool InHole(vtkIdType i)
 
 } // namespace
 
-TEST(InputArrays, DataOfAnyNumericTypeGiveTheSameResult)
+TEST(InputArrays, DataAndWeightsOfAnyNumericTypeGiveTheSameResult)
 {
   auto plane = Grid(10, 10);
   const auto value = [](vtkIdType i, int) { return i % 3 == 0; };
   AddPointArray(plane, "f", 1, value);
   auto reference = MakeFilter(plane);
   SetInputArray(reference, 0, "f");
+  SetInputArray(reference, 5, "f");
+  reference->SetFidelityWeight(0.5);
   reference->Update();
   for (const int type : NumericTypes)
   {
     AddPointArray(plane, "typed", 1, value, type);
     auto filter = MakeFilter(plane);
     SetInputArray(filter, 0, "typed");
+    SetInputArray(filter, 5, "typed"); // weights
+    filter->SetFidelityWeight(0.5);
     filter->SetOutputPrecisionToDouble();
     filter->Update();
     EXPECT_TRUE(Identical(Result(filter, "typedDiffused"), Result(reference))) << type;
@@ -112,183 +110,6 @@ TEST(InputArrays, MasksOfAnyNumericTypeHaveTheSameEffect)
   }
 }
 
-TEST(InputArrays, FidelityIsMultipliedPointByPoint)
-{
-  auto plane = Grid(10, 10);
-  AddRough(plane);
-  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
-  AddPointArray(
-    plane, "two", 1, [](vtkIdType, int) { return 2.0; }, VTK_INT);
-  AddPointArray(
-    plane, "known", 1, [](vtkIdType i, int) { return InHole(i) ? 0.0 : 1.0; }, VTK_FLOAT);
-  const auto run = [&](const char* mask, const char* fidelity, double weight)
-  {
-    auto filter = MakeFilter(plane);
-    SetInputArray(filter, 1, mask);
-    SetInputArray(filter, 5, fidelity);
-    filter->SetInitialFillToInput();
-    filter->SetFidelityWeight(weight);
-    filter->Update();
-    return Copy(Result(filter));
-  };
-  const auto twice = run("", "", 2.0);
-  EXPECT_TRUE(Identical(run("", "two", 1.0), twice));
-  EXPECT_FALSE(Identical(run("", "", 1.0), twice));
-  EXPECT_TRUE(Identical(run("", "known", 2.0), run("mask", "", 2.0)));
-}
-
-TEST(InputArrays, NaNInAnyComponentIsMissing)
-{
-  auto plane = Grid(10, 10);
-  AddRough(plane, 2);
-  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
-  AddPointArray(plane, "holed", 2,
-    [](vtkIdType i, int k)
-    { return InHole(i) && k == static_cast<int>(i % 2) ? std::nan("") : Rough(i, k); });
-  for (const int fill :
-    { vtkFVMHeatFilter::INITIAL_FILL_MEAN, vtkFVMHeatFilter::INITIAL_FILL_NOISE })
-  {
-    auto masked = MakeFilter(plane);
-    SetInputArray(masked, 1, "mask");
-    auto holed = MakeFilter(plane);
-    SetInputArray(holed, 0, "holed");
-    for (vtkFVMHeatFilter* filter : { masked.Get(), holed.Get() })
-    {
-      filter->SetInitialFill(fill);
-      filter->SetFidelityWeight(1.0);
-      filter->Update();
-    }
-    EXPECT_TRUE(Identical(Result(masked), Result(holed, "holedDiffused")));
-  }
-}
-
-TEST(InputArrays, EveryInitialFillStartsFromItsDocumentedValues)
-{
-  auto plane = Grid(10, 10);
-  AddPointArray(plane, "f", 1,
-    [](vtkIdType i, int k) { return i == 67 ? std::nan("")
-                               : InHole(i)  ? 50.0
-                                            : Rough(i, k); });
-  AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
-  const std::vector<double> areas = ControlAreas(plane);
-  double sum = 0.0;
-  double area = 0.0;
-  double low = 1.0;
-  double high = -1.0;
-  for (vtkIdType i = 0; i < 100; ++i)
-  {
-    if (!InHole(i))
-    {
-      sum += areas[i] * Rough(i, 0);
-      area += areas[i];
-      low = std::min(low, Rough(i, 0));
-      high = std::max(high, Rough(i, 0));
-    }
-  }
-  auto filter = MakeFilter(plane);
-  SetInputArray(filter, 0, "f");
-  SetInputArray(filter, 1, "mask");
-  filter->SetNumberOfTimeSteps(0); // 0 steps: the initial state
-  const auto at = [&](vtkIdType i) { return Result(filter)->GetComponent(i, 0); };
-
-  filter->SetInitialFillToMean();
-  filter->Update();
-  EXPECT_NEAR(at(66), sum / area, 1e-14);
-  EXPECT_NEAR(at(67), sum / area, 1e-14);
-  EXPECT_EQ(at(0), Rough(0, 0));
-
-  filter->SetInitialFillToInput();
-  filter->Update();
-  EXPECT_EQ(at(66), 50.0);
-  EXPECT_NEAR(at(67), sum / area, 1e-14); // NaN falls back to the mean
-
-  filter->SetInitialFillToNoise();
-  filter->Update();
-  const auto first = Copy(Result(filter));
-  std::set<double> values;
-  for (vtkIdType i = 0; i < 100; ++i)
-  {
-    if (InHole(i))
-    {
-      values.insert(at(i));
-      EXPECT_GE(at(i), low);
-      EXPECT_LE(at(i), high);
-    }
-    else
-    {
-      EXPECT_EQ(at(i), Rough(i, 0));
-    }
-  }
-  EXPECT_EQ(values.size(), 9u); // all different
-  filter->SetRandomSeed(1);
-  filter->Update();
-  EXPECT_GT(std::abs(at(66) - first->GetComponent(66, 0)), 1e-6);
-  filter->SetRandomSeed(0);
-  filter->Update();
-  EXPECT_TRUE(Identical(first, Result(filter)));
-}
-
-TEST(InputArrays, MeanFillIsTheMeanOfTheConnectedComponent)
-{
-  auto plane = Grid(10, 10);
-  vtkNew<vtkCellArray> halves; // disconnected between columns 4 and 5
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType c = 0; c < plane->GetNumberOfCells(); ++c)
-  {
-    if (c / 2 % 9 != 4)
-    {
-      plane->GetCellPoints(c, corners);
-      halves->InsertNextCell(corners);
-    }
-  }
-  plane->SetPolys(halves);
-  AddPointArray(plane, "f", 1,
-    [](vtkIdType i, int) { return i == 11 || i == 18 ? std::nan("")
-                             : i % 10 < 5            ? 2.0
-                                                     : 8.0; });
-  auto filter = MakeFilter(plane);
-  SetInputArray(filter, 0, "f");
-  filter->SetNumberOfTimeSteps(0);
-  filter->Update();
-  EXPECT_NEAR(Result(filter)->GetComponent(11, 0), 2.0, 1e-14);
-  EXPECT_NEAR(Result(filter)->GetComponent(18, 0), 8.0, 1e-14);
-}
-
-TEST(InputArrays, NoiseDependsOnTheGlobalIds)
-{
-  auto plane = Grid(10, 10);
-  AddPointArray(
-    plane, "f", 2, [](vtkIdType i, int k) { return InHole(i) ? std::nan("") : Rough(i, k); });
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("ids");
-  for (vtkIdType i = 0; i < 100; ++i)
-  {
-    ids->InsertNextValue(i == 66 ? 57 : i == 57 ? 66 : i); // two missing points exchange their ids
-  }
-  vtkNew<vtkIdTypeArray> indices;
-  indices->SetName("indices");
-  for (vtkIdType i = 0; i < 100; ++i)
-  {
-    indices->InsertNextValue(i);
-  }
-  plane->GetPointData()->SetGlobalIds(indices);
-  auto filter = MakeFilter(plane);
-  SetInputArray(filter, 0, "f");
-  filter->SetNumberOfTimeSteps(0);
-  filter->SetInitialFillToNoise();
-  filter->Update();
-  const auto byIndex = Copy(Result(filter));
-  plane->GetPointData()->SetGlobalIds(ids);
-  filter->Update();
-  for (int k = 0; k < 2; ++k)
-  {
-    EXPECT_EQ(Result(filter)->GetComponent(66, k), byIndex->GetComponent(57, k));
-    EXPECT_EQ(Result(filter)->GetComponent(57, k), byIndex->GetComponent(66, k));
-    EXPECT_EQ(Result(filter)->GetComponent(67, k), byIndex->GetComponent(67, k));
-  }
-  EXPECT_NE(byIndex->GetComponent(66, 0), byIndex->GetComponent(66, 1));
-}
-
 TEST(InputArrays, FixedTakesPrecedenceOverMissing)
 {
   auto plane = Grid(10, 10);
@@ -301,46 +122,6 @@ TEST(InputArrays, FixedTakesPrecedenceOverMissing)
   filter->Update();
   EXPECT_EQ(Result(filter)->GetComponent(66, 0), Rough(66, 0));
   EXPECT_NE(Result(filter)->GetComponent(67, 0), Rough(67, 0));
-}
-
-TEST(InputArrays, NothingFlowsIntoOrOutOfAnExcludedRegion)
-{
-  auto plane = Grid(10, 10);
-  vtkDataArray* f = AddRough(plane);
-  // The two middle columns are excluded: two halves of four columns remain.
-  const auto excluded = [](vtkIdType i) { return i % 10 == 4 || i % 10 == 5; };
-  AddPointArray(plane, "mask", 1, [&](vtkIdType i, int) { return excluded(i); });
-  auto filter = MakeFilter(plane);
-  SetInputArray(filter, 1, "mask");
-  filter->SetMaskModeToExclude();
-  filter->SetUnitsToAbsolute();
-  Messages messages(filter);
-  filter->Update();
-  EXPECT_TRUE(messages.Warnings.empty());
-
-  auto half = Grid(4, 10);
-  AddPointArray(
-    half, "f", 1, [&](vtkIdType i, int) { return f->GetComponent(10 * (i / 4) + i % 4, 0); });
-  auto alone = MakeFilter(half);
-  SetInputArray(alone, 0, "f");
-  alone->SetUnitsToAbsolute();
-  alone->Update();
-  for (vtkIdType i = 0; i < 100; ++i)
-  {
-    if (excluded(i))
-    {
-      EXPECT_EQ(Result(filter)->GetComponent(i, 0), f->GetComponent(i, 0));
-    }
-    else if (i % 10 < 4)
-    {
-      EXPECT_NEAR(Result(filter)->GetComponent(i, 0),
-        Result(alone)->GetComponent(4 * (i / 10) + i % 10, 0), 1e-12);
-    }
-  }
-  // The total over the region is conserved, with the areas of its own triangles.
-  const std::vector<double> areas = ControlAreas(half);
-  EXPECT_NEAR(Total(areas, Result(alone)), Total(areas, half->GetPointData()->GetArray("f")),
-    1e-12 * TotalMagnitude(areas, Result(alone)));
 }
 
 TEST(InputArrays, AMaskWithoutEffectIsOneWarning)
@@ -435,31 +216,6 @@ TEST(InputArrays, OfCellsAreTheDefaultWithoutPointScalarsAndNamedIfTheAssociatio
     errorOf(filter).find("association 0 for the point array of this name"), std::string::npos);
 }
 
-/// The other filters need no array at all.
-TEST(InputArrays, AreNotNeededByTexturesHarmonicMapsAndDirectionFields)
-{
-  const auto sphere = Sphere(3);
-  const auto run = [&](vtkPolyDataAlgorithm* filter)
-  {
-    filter->SetInputData(sphere);
-    Messages messages(filter);
-    filter->Update();
-    EXPECT_TRUE(messages.Errors.empty() && messages.Warnings.empty()) << filter->GetClassName();
-  };
-  vtkNew<vtkTuringTextureFilter> texture;
-  texture->SetNumberOfTimeSteps(3);
-  texture->SetFeatureSize(2.0); // that the mesh resolves
-  vtkNew<vtkHarmonicMapFilter> map;
-  vtkNew<vtkSurfaceDirectionFieldFilter> field;
-  field->SetMethodToSmooth(); // spheres have no direction of curvature
-  run(texture);
-  run(map);
-  run(field);
-  EXPECT_TRUE(AllFinite(Result(texture, "u1")));
-  EXPECT_TRUE(AllFinite(Result(map, "NormalsHarmonic")));
-  EXPECT_TRUE(AllFinite(field->GetOutput()->GetCellData()->GetArray("Direction")));
-}
-
 TEST(InputArrays, AreFoundByAnyAttributeInPieces)
 {
   for (const int role : { vtkDataSetAttributes::TCOORDS, vtkDataSetAttributes::TENSORS })
@@ -497,39 +253,6 @@ TEST(InputArrays, AreFoundByAnyAttributeInPieces)
       EXPECT_EQ(result->GetNumberOfComponents(), components);
     }
   }
-}
-
-/// As for a surface in one piece: numpy edits an array, and the user marks the polydata only.
-TEST(InputArrays, OfPiecesThatAreEditedInPlaceAreReadAgain)
-{
-  vtkNew<vtkPartitionedDataSet> partitions;
-  for (unsigned int p = 0; p < 2; ++p)
-  {
-    auto part = Grid(4, 5);
-    for (vtkIdType i = 0; i < 20; ++i)
-    {
-      const double* point = part->GetPoint(i);
-      part->GetPoints()->SetPoint(i, point[0] + 3.0 * p, point[1], 0.0);
-    }
-    AddRough(part);
-    partitions->SetPartition(p, part);
-  }
-  vtkNew<vtkFVMHeatFilter> filter;
-  filter->SetInputDataObject(partitions);
-  const auto resultAt = [&](unsigned int p)
-  {
-    filter->Update();
-    return vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0))
-      ->GetPartition(p)
-      ->GetPointData()
-      ->GetArray("fDiffused");
-  };
-  const auto before = Copy(resultAt(1));
-  vtkDataSet* const second = partitions->GetPartition(1);
-  second->GetPointData()->GetScalars()->SetComponent(10, 0, 7.0);
-  second->vtkObject::Modified();
-  partitions->vtkObject::Modified();
-  EXPECT_FALSE(Identical(resultAt(1), before));
 }
 
 /// A tetrahedron has as many points as cells.

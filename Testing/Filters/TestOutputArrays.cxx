@@ -162,32 +162,6 @@ TEST(OutputArrays, ColorsOfAnyNumberOfComponentsCarryAlphaOver)
   }
 }
 
-TEST(OutputArrays, ColorsAreRoundedAtTheEndOnly)
-{
-  auto sphere = Sphere(3);
-  AddPointArray(sphere, "rgb", 3, Color, VTK_UNSIGNED_CHAR);
-  for (const bool timeSteps : { false, true })
-  {
-    auto filter = MakeFilter(sphere);
-    SetInputArray(filter, 0, "rgb");
-    filter->SetTimeStep(0.05); // so small that rounding in every step would suppress changes
-    filter->SetNumberOfTimeSteps(60);
-    filter->SetGenerateTimeSteps(timeSteps);
-    filter->Update();
-    const auto rounded = Copy(Result(filter, "rgbDiffused"));
-    filter->SetOutputPrecisionToDouble();
-    filter->Update();
-    vtkDataArray* exact = Result(filter, "rgbDiffused");
-    for (vtkIdType i = 0; i < exact->GetNumberOfTuples(); ++i)
-    {
-      for (int k = 0; k < 3; ++k)
-      {
-        ASSERT_EQ(rounded->GetComponent(i, k), std::round(exact->GetComponent(i, k)));
-      }
-    }
-  }
-}
-
 TEST(OutputArrays, ColorsAreClampedIfTheStateLeavesTheirRange)
 {
   auto sphere = Sphere(4);
@@ -392,6 +366,13 @@ TEST(OutputArrays, ResultArrayNameIsThePrefixOfTheOtherArrays)
     { "my", "myRegionId", "myRegionProbability" });
   EXPECT_STREQ(segmentation->GetOutput()->GetPointData()->GetScalars()->GetName(), "myRegionId");
   expect(tensor, { "fEdgeEnhanced", "DiffusionAxes" }, { "my", "myDiffusionAxes" });
+  vtkNew<vtkTuringTextureFilter> texture;
+  texture->SetNumberOfTimeSteps(1);
+  texture->ColorOutputOn();
+  expect(texture, { "u1", "u2", "Texture", "TextureColor" },
+    { "myu1", "myu2", "myTexture", "myTextureColor" });
+  EXPECT_EQ(Result(texture, "myTextureColor")->GetDataType(), VTK_UNSIGNED_CHAR);
+  EXPECT_STREQ(texture->GetOutput()->GetPointData()->GetScalars()->GetName(), "myTextureColor");
 }
 
 /// The data are replaced on purpose only if ResultArrayName is their name.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
-#include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPoints.h"
@@ -135,33 +134,7 @@ std::string ErrorOf(Filter* filter)
   return messages.Errors.empty() ? "" : messages.Errors[0];
 }
 
-std::string WarningOf(Filter* filter)
-{
-  const Messages messages(filter);
-  filter->Update();
-  return messages.Warnings.empty() ? "" : messages.Warnings[0];
-}
-
 } // namespace
-
-TEST(InterpolationFilter, HasTheKnownValuesOfTheData)
-{
-  auto sphere = SparseSphere(5);
-  auto filter = MakeFilter(sphere);
-  filter->ExactOn();
-  filter->Update();
-  vtkDataArray* const u = Result(filter, "fInterpolated");
-  ASSERT_NE(u, nullptr);
-  EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), u);
-  EXPECT_EQ(Result(filter, "fError"), nullptr);
-  for (vtkIdType i = 0; i < u->GetNumberOfTuples(); i += 9)
-  {
-    EXPECT_NEAR(u->GetComponent(i, 0), Field(sphere->GetPoint(i)), 1e-12);
-  }
-  EXPECT_LT(LargestError(filter, "fInterpolated"), 0.03);
-  EXPECT_EQ(filter->GetNumberOfValues(), (u->GetNumberOfTuples() + 8) / 9);
-  EXPECT_EQ(filter->GetEffectiveSmoothing(), 0.0);
-}
 
 /// As files of triangles without neighbours store them.
 TEST(InterpolationFilter, EqualValuesOfMergedPointsCountOnce)
@@ -244,22 +217,6 @@ TEST(InterpolationFilter, ReadsValuesThatWereEditedInPlace)
   EXPECT_FALSE(Identical(Result(filter, "tInterpolated"), before));
 }
 
-TEST(InterpolationFilter, CountsFarPoints)
-{
-  auto filter = MakeFilter(Sphere(3), Probes(30, 1.5));
-  filter->SetMaximumDistance(0.1);
-  EXPECT_NE(ErrorOf(filter).find("outside of the surface: farther than MaximumDistance 0.1"),
-    std::string::npos);
-  EXPECT_EQ(Result(filter, "tInterpolated"), nullptr);
-  auto both = Probes(30, 1.0);
-  both->GetPoints()->SetPoint(4, 8.0, 0.0, 0.0);
-  filter->SetInputData(1, both);
-  EXPECT_NE(WarningOf(filter).find("1 value is farther from the surface than MaximumDistance 0.1"),
-    std::string::npos);
-  EXPECT_EQ(filter->GetNumberOfFarValues(), 1);
-  EXPECT_EQ(filter->GetNumberOfValues(), 29);
-}
-
 TEST(InterpolationFilter, ReportsBadPointsWithValues)
 {
   vtkNew<vtkTable> table;
@@ -286,121 +243,6 @@ TEST(InterpolationFilter, ReportsBadPointsWithValues)
   EXPECT_NE(ErrorOf(filter).find("InputArray"), std::string::npos); // the sphere has no data
 }
 
-TEST(InterpolationFilter, SaysWhatItDoesWithOddValues)
-{
-  auto sphere = Sphere(3);
-  auto probes = Probes(20, 1.0);
-  vtkDataArray* const t = probes->GetPointData()->GetArray("t");
-  vtkDataArray* const w = probes->GetPointData()->GetArray("w");
-  auto filter = MakeFilter(sphere, probes);
-  const auto update = [&]
-  {
-    t->Modified();
-    w->Modified();
-    probes->Modified();
-    return WarningOf(filter);
-  };
-  const auto has = [](const std::string& text, const char* part)
-  { return text.find(part) != std::string::npos; };
-  filter->ExactOn();
-  EXPECT_EQ(update(), "");
-
-  const auto values = Copy(t);
-  t->Fill(4.5);
-  EXPECT_TRUE(has(update(), "all known values are equal, and so is the result"));
-  EXPECT_NEAR(Result(filter, "tInterpolated")->GetComponent(11, 0), 4.5, 1e-12);
-
-  // Two values at a point of the surface
-  t->DeepCopy(values);
-  probes->GetPoints()->SetPoint(4, sphere->GetPoint(7));
-  probes->GetPoints()->SetPoint(5, sphere->GetPoint(7));
-  w->Fill(1.0);
-  w->SetComponent(5, 0, 3.0);
-  t->SetComponent(4, 0, 3.0);
-  t->SetComponent(5, 0, 5.0);
-  filter->SetPointWeightArray("w");
-  EXPECT_TRUE(has(update(), "1 place has different values: their weighted mean counts"));
-  EXPECT_NEAR(Result(filter, "tInterpolated")->GetComponent(7, 0), 4.5, 1e-12);
-
-  w->SetComponent(3, 0, -1.0);
-  filter->Modified();
-  EXPECT_TRUE(
-    has(ErrorOf(filter), "is -1 at point 3 of the values; allowed: finite numbers, 0 or"));
-  w->SetComponent(3, 0, 1.0);
-  t->SetComponent(2, 0, std::numeric_limits<double>::infinity());
-  filter->Modified();
-  EXPECT_TRUE(has(ErrorOf(filter), "a value is infinite at point 2 of the values; allowed"));
-
-  // The smoothing of two values cannot be found.
-  t->Fill(NaN);
-  t->SetComponent(4, 0, 3.0);
-  t->SetComponent(9, 0, 5.0);
-  filter->ExactOff();
-  EXPECT_TRUE(has(update(), "fewer than 3 places have a value, too few for AutomaticSmoothing"));
-  EXPECT_NEAR(Result(filter, "tInterpolated")->GetComponent(7, 0), 3.0, 1e-12);
-}
-
-TEST(InterpolationFilter, IsNaNWhereNothingIsKnown)
-{
-  // A second sphere without values
-  vtkNew<vtkAppendPolyData> both;
-  auto far = Sphere(2);
-  for (vtkIdType i = 0; i < far->GetNumberOfPoints(); ++i)
-  {
-    const double* const x = far->GetPoint(i);
-    far->GetPoints()->SetPoint(i, 5.0 + x[0], x[1], x[2]);
-  }
-  both->AddInputData(Sphere(3));
-  both->AddInputData(far);
-  both->Update();
-  auto filter = MakeFilter(both->GetOutput(), Probes(20, 1.0));
-  filter->ExactOn();
-  filter->ComputeErrorOn();
-  EXPECT_NE(WarningOf(filter).find("1 connected component has no known value"), std::string::npos);
-  for (const char* const name : { "tInterpolated", "tError" })
-  {
-    for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfPoints(); ++i)
-    {
-      EXPECT_EQ(std::isnan(Result(filter, name)->GetComponent(i, 0)),
-        filter->GetOutput()->GetPoint(i)[0] > 3.0);
-    }
-  }
-
-  // A mask around half of the values
-  auto sphere = Sphere(3);
-  AddPointArray(
-    sphere, "south", 1, [&](vtkIdType i, int) { return sphere->GetPoint(i)[2] < 0.0 ? 1.0 : 0.0; });
-  filter->SetInputDataObject(sphere);
-  SetInputArray(filter, 1, "south");
-  filter->SetMaskModeToExclude();
-  EXPECT_NE(WarningOf(filter).find("10 values are where MaskArray excludes the surface"),
-    std::string::npos);
-  EXPECT_EQ(filter->GetNumberOfValues(), 10);
-  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
-  {
-    EXPECT_EQ(std::isnan(Result(filter, "tInterpolated")->GetComponent(i, 0)),
-      sphere->GetPoint(i)[2] < 0.0);
-  }
-}
-
-TEST(InterpolationFilter, KeepsTheRangeOfTheValues)
-{
-  auto probes = Probes(30, 1.0);
-  vtkDataArray* const t = probes->GetPointData()->GetArray("t");
-  for (vtkIdType i = 0; i < 30; ++i)
-  {
-    t->SetComponent(i, 0, i < 15 ? 0.0 : 1.0);
-  }
-  auto filter = MakeFilter(Sphere(4), probes);
-  filter->Update();
-  EXPECT_GT(Result(filter, "tInterpolated")->GetRange()[1], 1.01);
-  EXPECT_LT(Result(filter, "tInterpolated")->GetRange()[0], -0.01);
-  filter->KeepRangeOn();
-  EXPECT_EQ(WarningOf(filter), "");
-  EXPECT_EQ(Result(filter, "tInterpolated")->GetRange()[0], 0.0);
-  EXPECT_EQ(Result(filter, "tInterpolated")->GetRange()[1], 1.0);
-}
-
 TEST(InterpolationFilter, GivesEachBlockTheValues)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
@@ -418,30 +260,4 @@ TEST(InterpolationFilter, GivesEachBlockTheValues)
     ASSERT_NE(found, nullptr);
     EXPECT_LT(LargestDifference(found, Result(alone, "tInterpolated")), 1e-9);
   }
-}
-
-TEST(InterpolationFilter, ContinuesSlopesUnlessTheBoundaryIsNatural)
-{
-  auto plane = Grid(21, 21);
-  const auto ramp = [&](vtkIdType i)
-  { return plane->GetPoint(i)[0] - 2.0 * plane->GetPoint(i)[1]; };
-  AddPointArray(plane, "f", 1, [&](vtkIdType i, int) { return i % 45 == 22 ? ramp(i) : NaN; });
-  plane->GetPointData()->SetActiveScalars("f");
-  auto filter = MakeFilter(plane);
-  filter->ExactOn();
-  const auto largest = [&]
-  {
-    filter->Update();
-    double found = 0.0;
-    for (vtkIdType i = 0; i < plane->GetNumberOfPoints(); ++i)
-    {
-      found =
-        std::max(found, std::abs(Result(filter, "fInterpolated")->GetComponent(i, 0) - ramp(i)));
-    }
-    return found;
-  };
-  EXPECT_STREQ(filter->GetBoundaryAsString(), "Automatic");
-  EXPECT_LT(largest(), 1e-9 * plane->GetLength());
-  filter->SetBoundaryToNatural();
-  EXPECT_GT(largest(), 1e-2);
 }

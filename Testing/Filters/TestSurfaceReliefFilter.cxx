@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FilterTest.h"
 
-#include "vtkAppendPolyData.h"
 #include "vtkCellData.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkSurfaceReliefFilter.h"
 
 #include <gtest/gtest.h>
@@ -134,24 +132,6 @@ TEST(SurfaceReliefFilter, OfConstantHeightMakesALargerBoxWhateverTheOrientation)
   }
 }
 
-TEST(SurfaceReliefFilter, ChangesTheVolumeByTheIntegralOfTheRelief)
-{
-  const auto box = Box(10.0, 60);
-  const double k = 2.0 * vtkMath::Pi() / 5.0;
-  SetTexture(box,
-    [&](const double* p)
-    { return std::cos(k * p[0]) * std::cos(k * p[1]) * std::cos(k * p[2]) + 0.2 * p[2]; });
-  vtkNew<vtkSurfaceReliefFilter> filter;
-  filter->SetInputData(box);
-  filter->SetHeight(0.005);
-  filter->Update();
-  // The cosines, of two periods, have no integral on any face; that of 0.2 z is 10^2 (2 + 4 * 1).
-  // Edges add terms of second order.
-  const double integral = 100.0 * (2.0 + 4.0 * 1.0) * 0.005;
-  EXPECT_NEAR(filter->GetVolumeChange(), integral, 0.01 * integral);
-  EXPECT_EQ(filter->GetCrossingTriangles(), 0);
-}
-
 TEST(SurfaceReliefFilter, MovesCopiesOfAPointAlikeSoThatSoupsStayClosed)
 {
   const auto box = Box(10.0, 6, true);
@@ -210,150 +190,6 @@ TEST(SurfaceReliefFilter, LeavesMaskedPointsFacesAndOverhangs)
   sideways->SetOverhang(45.0);
   sideways->SetUpDirection(-3.0, 0.0, 0.0);
   check(sideways, [](double* p) { return p[0] == 10.0; });
-}
-
-TEST(SurfaceReliefFilter, KeepsRimsAndPassesBlocksWithoutValues)
-{
-  const auto open = Grid(9, 9);
-  AddPointArray(open, "Texture", 1, [](vtkIdType, int) { return 1.0; });
-  const auto closed = Box(10.0, 4);
-  const auto other = Grid(3, 3);
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, open);
-  blocks->SetBlock(1, closed);
-  blocks->SetBlock(2, other);
-  vtkNew<vtkSurfaceReliefFilter> filter;
-  filter->SetInputDataObject(blocks);
-  filter->SetHeight(-0.25);
-  Messages messages(filter);
-  filter->Update();
-  ASSERT_EQ(messages.Warnings.size(), 1u);
-  EXPECT_NE(messages.Warnings[0].find("without such a numeric array"), std::string::npos);
-  EXPECT_EQ(filter->GetOpenEdges(), 32);
-  EXPECT_NEAR(filter->GetVolumeChange(), 9.5 * 9.5 * 9.5 - 1000.0, 150.0); // carved edges fade
-  EXPECT_LT(filter->GetVolumeChange(), -50.0);
-  auto* const result = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-  auto* const grid = vtkPolyData::SafeDownCast(result->GetBlock(0));
-  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
-  {
-    const bool rim = i % 9 == 0 || i % 9 == 8 || i < 9 || i >= 72;
-    EXPECT_EQ(grid->GetPoint(i)[2], rim ? 0.0 : -0.25) << i;
-  }
-  EXPECT_EQ(vtkPolyData::SafeDownCast(result->GetBlock(2))->GetPoints(), other->GetPoints());
-}
-
-TEST(SurfaceReliefFilter, CountsCrossingTrianglesOfTheInputAndRaisesThemAllTheSame)
-{
-  const auto box = Box(10.0, 8);
-  vtkNew<vtkPolyData> moved;
-  moved->DeepCopy(box);
-  for (vtkIdType i = 0; i < moved->GetNumberOfPoints(); ++i)
-  {
-    double p[3];
-    moved->GetPoint(i, p);
-    moved->GetPoints()->SetPoint(i, p[0] + 6.3, p[1] + 3.7, p[2] + 1.1);
-  }
-  vtkNew<vtkAppendPolyData> both;
-  both->AddInputData(box);
-  both->AddInputData(moved);
-  vtkNew<vtkSurfaceReliefFilter> filter;
-  filter->SetInputConnection(both->GetOutputPort());
-  filter->SetHeight(0.1);
-  Messages messages(filter);
-  filter->Update();
-  ASSERT_EQ(messages.Warnings.size(), 1u);
-  const auto count = static_cast<long>(filter->GetCrossingTrianglesBefore());
-  EXPECT_GT(count, 20);
-  EXPECT_NE(
-    messages.Warnings[0].find("the surface crosses itself at " + std::to_string(count) + " tri"),
-    std::string::npos)
-    << messages.Warnings[0];
-  EXPECT_GT(filter->GetVolumeChange(), 0.5 * 2.0 * 0.1 * 600.0);
-  EXPECT_EQ(filter->GetOpenEdges(), 0);
-}
-
-TEST(SurfaceReliefFilter, ReliefAboveTheWallIsLoweredWithAWarning)
-{
-  const auto plate = Box(10.0, 24);
-  for (vtkIdType i = 0; i < plate->GetNumberOfPoints(); ++i)
-  {
-    double p[3];
-    plate->GetPoint(i, p);
-    plate->GetPoints()->SetPoint(i, p[0], p[1], 0.1 * p[2]);
-  }
-  vtkNew<vtkSurfaceReliefFilter> filter;
-  filter->SetInputData(plate);
-  filter->SetHeight(-0.9); // of a wall of 1
-  Messages messages(filter);
-  filter->Update();
-  ASSERT_EQ(messages.Warnings.size(), 1u);
-  EXPECT_NE(
-    messages.Warnings[0].find("is lowered by more than half of that at "), std::string::npos);
-  EXPECT_EQ(filter->GetCrossingTriangles(), 0);
-  EXPECT_NEAR(filter->GetSmallestWall(), 0.5, 1e-6); // a quarter from each side
-  EXPECT_GT(filter->GetLoweredPoints(), 400);
-}
-
-TEST(SurfaceReliefFilter, NamesEachWrongPropertyAndValue)
-{
-  const auto box = Box(10.0, 4);
-  const auto errorOf = [&](const std::function<void(vtkSurfaceReliefFilter*)>& set)
-  {
-    vtkNew<vtkSurfaceReliefFilter> filter;
-    filter->SetInputData(box);
-    set(filter);
-    Messages messages(filter);
-    filter->Update();
-    EXPECT_TRUE(filter->GetOutput()->GetPoints() == box->GetPoints());
-    return messages.Errors.size() == 1 ? messages.Errors[0] : std::string("no error");
-  };
-  using Filter = vtkSurfaceReliefFilter;
-  const std::pair<std::function<void(Filter*)>, const char*> cases[] = {
-    { [](Filter* f) { f->SetHeight(vtkMath::Nan()); }, "Height is nan; allowed: finite numbers" },
-    { [](Filter* f) { f->SetFlank(-1.0); }, "Flank is -1; allowed: " },
-    { [](Filter* f) { f->SetOverhang(91.0); }, "Overhang is 91; allowed: 0 to 90 degrees, or -1" },
-    { [](Filter* f) { f->SetUpDirection(0.0, 0.0, 0.0); }, "UpDirection is 0; allowed: " },
-    { [](Filter* f) { f->SetLevels(2); }, "Levels is 2; allowed: 0 Smooth, 1 Two" },
-    { [](Filter* f) { f->SetHeight(20.0); }, "Height is 20, which makes a relief of up to 20" },
-    { [](Filter* f) { f->SetInputArrayToProcess(0, 0, 0, 0, "none"); },
-      "InputArray \"none\" is not among the point arrays" },
-    { [&](Filter* f)
-      {
-        box->GetPointData()->GetArray("Texture")->SetComponent(7, 0, NAN);
-        f->Modified();
-      },
-      "InputArray \"Texture\" is nan at point 7; allowed: finite numbers" },
-  };
-  for (const auto& [set, text] : cases)
-  {
-    const std::string error = errorOf(set);
-    EXPECT_NE(error.find(text), std::string::npos) << error;
-  }
-}
-
-TEST(SurfaceReliefFilter, ReadsEditsAndKeepsTheRest)
-{
-  const auto box = Box(10.0, 6);
-  vtkNew<vtkSurfaceReliefFilter> filter, fresh;
-  filter->SetInputData(box);
-  filter->SetHeight(0.3);
-  filter->Update();
-  box->GetPointData()->GetArray("Texture")->SetComponent(100, 0, 0.5);
-  filter->Modified();
-  filter->Update();
-  fresh->SetInputData(box);
-  fresh->SetHeight(0.3);
-  fresh->Update();
-  EXPECT_EQ(Height(filter, 100), 0.15);
-  for (vtkIdType i = 0; i < box->GetNumberOfPoints(); ++i)
-  {
-    EXPECT_EQ(vtkMath::Distance2BetweenPoints(
-                std::array<double, 3>{ filter->GetOutput()->GetPoint(i)[0],
-                  filter->GetOutput()->GetPoint(i)[1], filter->GetOutput()->GetPoint(i)[2] }
-                  .data(),
-                fresh->GetOutput()->GetPoint(i)),
-      0.0);
-  }
 }
 
 TEST(SurfaceReliefFilter, RefinesLargeFacesWithTheirData)

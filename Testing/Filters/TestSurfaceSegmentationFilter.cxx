@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BandedImage.h"
 #include "IntrinsicTVTest.h"
 
 #include "vtkCellData.h"
@@ -13,7 +12,6 @@
 #include <sstream>
 
 using namespace FilterTest;
-using IntrinsicTVTest::AddCap;
 using IntrinsicTVTest::Height;
 
 namespace
@@ -116,66 +114,6 @@ TEST(SegmentationFilter, FindsTheCapWithItsAreaAndBoundary)
   }
 }
 
-TEST(SegmentationFilter, NaturalUnitsSuitAnyScale)
-{
-  auto filter = MakeFilter(SphereWithCap(4));
-  filter->Update();
-  const auto labels = Copy(Labels(filter));
-  for (const auto& [length, value] : { std::pair(1e-3, 1e6), std::pair(1e80, 1e-120) })
-  {
-    auto scaled = SphereWithCap(4);
-    for (vtkIdType i = 0; i < scaled->GetNumberOfPoints(); ++i)
-    {
-      double p[3];
-      scaled->GetPoint(i, p);
-      scaled->GetPoints()->SetPoint(i, length * p[0], length * p[1], length * p[2]);
-      scaled->GetPointData()->GetArray("f")->SetComponent(
-        i, 0, value * scaled->GetPointData()->GetArray("f")->GetComponent(i, 0));
-    }
-    auto other = MakeFilter(scaled);
-    other->Update();
-    EXPECT_TRUE(Identical(Labels(other), labels)) << length;
-    EXPECT_NEAR(
-      TableAt(other, 1, "BoundaryLength") / length, TableAt(filter, 1, "BoundaryLength"), 1e-6);
-    EXPECT_NEAR(other->GetEffectiveMean(2, 0) / value, filter->GetEffectiveMean(2, 0), 1e-6);
-  }
-  // lambda = w/(h R^2) in absolute units
-  filter->SetUnitsToAbsolute();
-  filter->AutomaticFidelityOff();
-  filter->SetFidelityWeight(0.6 / (filter->GetMeanEdgeLength() * 9.0));
-  filter->Update();
-  EXPECT_TRUE(Identical(Labels(filter), labels));
-}
-
-TEST(SegmentationFilter, DefaultsFindTheCapWithAndWithoutNoise)
-{
-  const double length = 2.0 * Pi * std::sqrt(0.75);
-  for (const double amplitude : { 0.0, 1.0, 2.0, 3.0 })
-  {
-    auto sphere = SphereWithCap(5);
-    vtkDataArray* const f = sphere->GetPointData()->GetArray("f");
-    BandedImage::Noise noise;
-    for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
-    {
-      f->SetComponent(i, 0, f->GetComponent(i, 0) + amplitude * noise(i, 0));
-    }
-    auto filter = MakeFilter(sphere);
-    filter->Update();
-    EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 1) << amplitude;
-    EXPECT_NEAR(TableAt(filter, 1, "Area"), Pi, 0.03 * Pi) << amplitude;
-    EXPECT_NEAR(TableAt(filter, 1, "BoundaryLength"), length, 0.12 * length) << amplitude;
-    EXPECT_NEAR(TableAt(filter, 1, "Mean_0"), 2.0, 0.1) << amplitude;
-    if (amplitude == 0.0)
-    {
-      EXPECT_NEAR(filter->GetEffectiveFidelityWeight(), 0.6, 1e-12);
-    }
-    else
-    {
-      EXPECT_GT(filter->GetEffectiveFidelityWeight(), 1.2);
-    }
-  }
-}
-
 TEST(SegmentationFilter, AutomaticFidelityReplacesFidelityWeight)
 {
   auto filter = MakeFilter(SphereWithCap(4));
@@ -251,54 +189,6 @@ TEST(SegmentationFilter, DataTermsReplaceTheData)
   EXPECT_NE(ErrorOf(filter).find("components is 3; allowed: 2"), std::string::npos);
 }
 
-TEST(SegmentationFilter, SeedsAloneGiveTheShortestBoundary)
-{
-  // Between two opposite caps as seeds: the belt is free, and any circle around it is longer than
-  // one near the smaller cap.
-  auto sphere = SphereWithCap(4);
-  AddPointArray(sphere, "r", 2, [](vtkIdType, int) { return 0.0; });
-  AddPointArray(sphere, "seeds", 1,
-    [&](vtkIdType i, int)
-    {
-      const double z = sphere->GetPoint(i)[2];
-      return z > 0.9 ? 2.0 : (z < 0.1 ? 1.0 : 0.0);
-    });
-  auto filter = MakeFilter(sphere);
-  SetInputArray(filter, 7, "r");
-  SetInputArray(filter, 6, "seeds");
-  filter->Update();
-  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
-  {
-    const double z = sphere->GetPoint(i)[2];
-    if (std::abs(z - 0.85) > 0.05)
-    {
-      EXPECT_EQ(Labels(filter)->GetComponent(i, 0), z > 0.9 ? 2.0 : 1.0) << z;
-    }
-  }
-}
-
-TEST(SegmentationFilter, ExcludedPointsHaveTheLabelZeroAndMissingOnesARegion)
-{
-  auto sphere = SphereWithCap(4);
-  AddPointArray(
-    sphere, "mask", 1, [&](vtkIdType i, int) { return sphere->GetPoint(i)[0] > 0.7 ? 1.0 : 0.0; });
-  auto filter = MakeFilter(sphere);
-  SetInputArray(filter, 1, "mask");
-  filter->Update();
-  double low = 3.0;
-  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
-  {
-    low = std::min(low, Labels(filter)->GetComponent(i, 0));
-  }
-  EXPECT_EQ(low, 1.0);
-  filter->SetMaskModeToExclude();
-  filter->Update();
-  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); ++i)
-  {
-    EXPECT_EQ(Labels(filter)->GetComponent(i, 0) == 0.0, sphere->GetPoint(i)[0] > 0.7);
-  }
-}
-
 TEST(SegmentationFilter, BlocksHaveRowsAndCurvesOfTheirOwn)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
@@ -343,44 +233,6 @@ TEST(SegmentationFilter, PortsKeepTheirResultsIfMemoryIsReleased)
   filter->Update();
   EXPECT_EQ(vtkTable::SafeDownCast(filter->GetOutputDataObject(1))->GetNumberOfRows(), 2);
   EXPECT_EQ(Boundaries(filter)->GetNumberOfLines(), 1);
-}
-
-TEST(SegmentationFilter, ErrorsNameThePropertyItsValueAndTheAllowedOnes)
-{
-  auto sphere = SphereWithCap(3);
-  AddPointArray(sphere, "half", 1, [](vtkIdType, int) { return 0.5; });
-  AddPointArray(sphere, "five", 1, [](vtkIdType i, int) { return i == 3 ? 5.0 : 0.0; });
-  const auto errorOf = [&](const std::function<void(Filter*)>& set)
-  {
-    auto filter = MakeFilter(sphere);
-    set(filter);
-    const std::string error = ErrorOf(filter);
-    EXPECT_FALSE(Labels(filter));
-    EXPECT_EQ(Boundaries(filter)->GetNumberOfPoints(), 0);
-    return error;
-  };
-  const auto expect = [&](const std::string& text, const std::function<void(Filter*)>& set)
-  { EXPECT_NE(errorOf(set).find(text), std::string::npos) << errorOf(set); };
-  expect("NumberOfRegions is 1; allowed: 2 to 1000", [](Filter* f) { f->SetNumberOfRegions(1); });
-  expect("FidelityWeight is -1", [](Filter* f) { f->SetFidelityWeight(-1.0); });
-  expect("FidelityArray is -1 at point", [](Filter* f) { SetInputArray(f, 5, "f"); });
-  expect("StopTolerance is 1", [](Filter* f) { f->SetStopTolerance(1.0); });
-  expect("the number of Means is 1; allowed: 2",
-    [](Filter* f)
-    {
-      f->AutomaticMeansOff();
-      f->SetMean(1, 0, 1.0);
-    });
-  expect("Means is nan",
-    [](Filter* f)
-    {
-      f->AutomaticMeansOff();
-      f->SetMean(1, 0, std::nan(""));
-      f->SetMean(2, 0, 1.0);
-    });
-  expect("SeedArray \"half\" is 0.5 at point 0", [](Filter* f) { SetInputArray(f, 6, "half"); });
-  expect("SeedArray has the label 5; allowed: 0 to NumberOfRegions 2",
-    [](Filter* f) { SetInputArray(f, 6, "five"); });
 }
 
 TEST(SegmentationFilter, MeansOfAnyOtherRegionOrComponentAreAnError)

@@ -117,16 +117,6 @@ TEST(Surfaces, DefectsAreHandledAndReportedInOneWarningWithCounts)
   }
 }
 
-TEST(Surfaces, WithoutDefectsGiveNoWarning)
-{
-  auto sphere = Sphere(2);
-  AddRough(sphere);
-  auto filter = MakeFilter(sphere);
-  Messages messages(filter);
-  filter->Update();
-  EXPECT_TRUE(messages.Warnings.empty() && messages.Errors.empty());
-}
-
 TEST(Surfaces, PointsThatNoTriangleUsesAreCountedWithoutAWarning)
 {
   auto sphere = Sphere(2);
@@ -200,19 +190,6 @@ TEST(Surfaces, FullyExcludedKeepTheInputAndFullyMissingAreAnError)
       EXPECT_EQ(Result(filter, "u"), nullptr) << name << fill;
     }
   }
-}
-
-TEST(Surfaces, ComponentsDoNotExchangeAnything)
-{
-  auto sheets = TwoSheets();
-  vtkDataArray* f =
-    AddPointArray(sheets, "f", 1, [](vtkIdType i, int) { return i < 36 ? 1.0 : 4.0; });
-  auto filter = MakeFilter(sheets);
-  SetInputArray(filter, 0, "f");
-  Messages messages(filter);
-  filter->SetTimeStep(100.0);
-  filter->Update();
-  EXPECT_LT(LargestDifference(Result(filter), f), 1e-13);
 }
 
 TEST(Surfaces, MergedPointsAreOne)
@@ -510,48 +487,6 @@ TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInternallyOnly)
   }
 }
 
-TEST(Surfaces, ConcavePolygonsAreCutInTheirInterior)
-{
-  // An L-shaped hexagon of area 3. A diagonal outside would give an area of 4 or more.
-  vtkNew<vtkPolyData> surface;
-  vtkNew<vtkPoints> points;
-  for (const auto& p :
-    { std::array<double, 2>{ 2, 0 }, { 2, 1 }, { 1, 1 }, { 1, 2 }, { 0, 2 }, { 0, 0 } })
-  {
-    points->InsertNextPoint(p[0], p[1], 0.0);
-  }
-  vtkNew<vtkCellArray> polys;
-  polys->InsertNextCell(
-    { vtkIdType(0), vtkIdType(1), vtkIdType(2), vtkIdType(3), vtkIdType(4), vtkIdType(5) });
-  surface->SetPoints(points);
-  surface->SetPolys(polys);
-  AddPointArray(surface, "f", 1, [](vtkIdType, int) { return 1.0; });
-  auto filter = MakeFilter(surface);
-  SetInputArray(filter, 0, "f");
-  filter->Update();
-  EXPECT_NEAR(HistoryAt(filter, 0, "Total_0"), 3.0, 1e-14);
-  // A concave quadrilateral, an arrow head of area 1. The other diagonal would give 3.
-  points->Initialize();
-  for (const auto& p : { std::array<double, 2>{ 0, 0 }, { 2, -1 }, { 1, 0 }, { 2, 1 } })
-  {
-    points->InsertNextPoint(p[0], p[1], 0.0);
-  }
-  for (int first = 0; first < 4; ++first)
-  {
-    vtkNew<vtkCellArray> quad;
-    quad->InsertNextCell(4);
-    for (int i = 0; i < 4; ++i)
-    {
-      quad->InsertCellPoint((first + i) % 4);
-    }
-    surface->SetPolys(quad);
-    AddPointArray(surface, "f", 1, [](vtkIdType, int) { return 1.0; });
-    surface->Modified();
-    filter->Update();
-    EXPECT_NEAR(HistoryAt(filter, 0, "Total_0"), 1.0, 1e-14) << first;
-  }
-}
-
 TEST(Surfaces, VertsAndLinesPassThroughAndCellDataStayWithTheirCells)
 {
   auto plane = Grid(6, 6);
@@ -616,41 +551,5 @@ TEST(Surfaces, GhostAndHiddenCellsAreIgnored)
                    : Result(reference)->GetComponent(i % 6 + 5 * (i / 6), 0),
         1e-12);
     }
-  }
-}
-
-TEST(Surfaces, NumberingAndOrientationDoNotMatter)
-{
-  auto sphere = Sphere(3);
-  AddPlaceData(sphere);
-  auto reference = MakeFilter(sphere);
-  reference->Update();
-  // Points and triangles in reverse order, and every third triangle with reversed orientation.
-  const vtkIdType last = sphere->GetNumberOfPoints() - 1;
-  vtkNew<vtkPolyData> other;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (vtkIdType i = 0; i <= last; ++i)
-  {
-    points->InsertNextPoint(sphere->GetPoint(last - i));
-  }
-  vtkNew<vtkCellArray> cells;
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType c = sphere->GetNumberOfCells() - 1; c >= 0; --c)
-  {
-    sphere->GetCellPoints(c, ids);
-    const bool flip = c % 3 == 0;
-    cells->InsertNextCell(
-      { last - ids->GetId(flip ? 1 : 0), last - ids->GetId(flip ? 0 : 1), last - ids->GetId(2) });
-  }
-  other->SetPoints(points);
-  other->SetPolys(cells);
-  AddPlaceData(other);
-  auto filter = MakeFilter(other);
-  filter->Update();
-  for (vtkIdType i = 0; i <= last; ++i)
-  {
-    EXPECT_NEAR(
-      Result(filter)->GetComponent(i, 0), Result(reference)->GetComponent(last - i, 0), 1e-9);
   }
 }

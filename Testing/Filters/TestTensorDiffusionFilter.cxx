@@ -43,48 +43,6 @@ vtkSmartPointer<Tensor> MakeFilter(vtkDataObject* data, int model = Tensor::MODE
 
 } // namespace
 
-TEST(TensorDiffusionFilter, EachModelReducesNoiseAndItsEnergy)
-{
-  for (int model = 0; model < 3; ++model)
-  {
-    const auto sphere = StripedSphere(5, 0.3);
-    const auto clean = StripedSphere(5, 0.0);
-    if (model != Tensor::MODEL_COHERENCE_ENHANCING) // these keep edges
-    {
-      for (vtkPolyData* const surface : { sphere.Get(), clean.Get() })
-      {
-        vtkDataArray* const f = surface->GetPointData()->GetScalars();
-        for (vtkIdType i = 0; i < f->GetNumberOfTuples(); ++i)
-        {
-          const double noise = surface == sphere ? 0.15 * Rough(i, 0) : 0.0;
-          f->SetComponent(i, 0, (surface->GetPoint(i)[2] > 0.3 ? 1.0 : 0.0) + noise);
-        }
-      }
-    }
-    const auto filter = MakeFilter(sphere, model);
-    Messages messages(filter);
-    filter->Update();
-    EXPECT_TRUE(messages.Errors.empty() && messages.Warnings.empty());
-    vtkDataArray* const u = Result(filter, Results[model]);
-    ASSERT_TRUE(u) << model;
-    EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars(), u);
-    double before = 0.0;
-    double after = 0.0;
-    for (vtkIdType i = 0; i < u->GetNumberOfTuples(); ++i)
-    {
-      const double exact = clean->GetPointData()->GetScalars()->GetComponent(i, 0);
-      before += std::pow(sphere->GetPointData()->GetScalars()->GetComponent(i, 0) - exact, 2);
-      after += std::pow(u->GetComponent(i, 0) - exact, 2);
-    }
-    EXPECT_LT(after, 0.5 * before) << model;
-    ASSERT_EQ(History(filter)->GetNumberOfRows(), 5);
-    for (vtkIdType row = 1; row < 5; ++row)
-    {
-      EXPECT_LT(HistoryAt(filter, row, "Energy"), HistoryAt(filter, row - 1, "Energy"));
-    }
-  }
-}
-
 TEST(TensorDiffusionFilter, ToleranceOfStepsDoesNotFillHoles)
 {
   const auto sphere = StripedSphere(6, 0.3);
@@ -113,31 +71,6 @@ TEST(TensorDiffusionFilter, ToleranceOfStepsDoesNotFillHoles)
   ASSERT_EQ(messages.Warnings.size(), 1u);
   EXPECT_NE(messages.Warnings[0].find("missed its tolerance in filling in"), std::string::npos)
     << messages.Warnings[0];
-}
-
-TEST(TensorDiffusionFilter, NaturalUnitsAreThoseOfTheMeshAndTheData)
-{
-  const auto sphere = StripedSphere(4, 0.3, 2);
-  for (int model = 0; model < 3; ++model)
-  {
-    const auto natural = MakeFilter(sphere, model);
-    natural->SetFidelityWeight(0.2);
-    natural->Update();
-    const double h = natural->GetMeanEdgeLength();
-    const double range = natural->GetValueRange();
-    EXPECT_NEAR(natural->GetTimeUnit(), h * h, 1e-12 * h * h);
-    const auto absolute = MakeFilter(sphere, model);
-    absolute->SetUnitsToAbsolute();
-    absolute->SetTimeStep(h * h);
-    absolute->SetFidelityWeight(0.2 / (h * h));
-    absolute->SetColorScale(10.0 * h / range);
-    absolute->SetContrast(0.05 * range / h);
-    absolute->SetNoiseScale(h);
-    absolute->SetIntegrationScale(4.0 * h);
-    absolute->Update();
-    EXPECT_LT(
-      LargestDifference(Result(natural, Results[model]), Result(absolute, Results[model])), 1e-9);
-  }
 }
 
 TEST(TensorDiffusionFilter, AxesRunAlongTheStripesAndNeedNoNewSteps)
@@ -193,34 +126,6 @@ TEST(TensorDiffusionFilter, DirectionsWeighTheTensor)
     none->Update();
     EXPECT_TRUE(Identical(Result(none, Results[model]), sphere->GetPointData()->GetScalars()));
   }
-}
-
-TEST(TensorDiffusionFilter, PropertiesAreChecked)
-{
-  const auto sphere = StripedSphere(2, 0.1);
-  const auto expect = [&](const char* name, void (*set)(Tensor*))
-  {
-    const auto wrong = MakeFilter(sphere);
-    set(wrong);
-    Messages messages(wrong);
-    wrong->Update();
-    ASSERT_EQ(messages.Errors.size(), 1u) << name;
-    EXPECT_NE(messages.Errors[0].find(name), std::string::npos) << messages.Errors[0];
-    EXPECT_FALSE(Result(wrong, "fBeltrami"));
-  };
-  expect("Model is 3", [](Tensor* f) { f->SetModel(3); });
-  expect("ColorScale is 0", [](Tensor* f) { f->SetColorScale(0.0); });
-  expect("Metric is -1", [](Tensor* f) { f->SetMetric(-1); });
-  expect("NoiseScale is -1", [](Tensor* f) { f->SetNoiseScale(-1.0); });
-  expect("IntegrationScale is nan", [](Tensor* f) { f->SetIntegrationScale(vtkMath::Nan()); });
-  expect("Contrast is 0", [](Tensor* f) { f->SetContrast(0.0); });
-  expect("Alpha is 0", [](Tensor* f) { f->SetAlpha(0.0); });
-  expect("DiffusionAxes is 1",
-    [](Tensor* f)
-    {
-      f->DiffusionAxesOn();
-      f->IntrinsicDelaunayOn();
-    });
 }
 
 TEST(TensorDiffusionFilter, ScalesThatContradictEachOtherGiveAWarning)

@@ -119,23 +119,6 @@ TEST(TimeContract, PublishesTheTimesOfItsStepsOnBothPorts)
   EXPECT_FALSE(filter->GetOutputInformation(0)->Has(Pipeline::TIME_RANGE()));
 }
 
-TEST(TimeContract, OutputIntervalThinsTheTimesAndKeepsTheLast)
-{
-  auto plane = Grid(6, 6);
-  AddRough(plane);
-  auto filter = MakeFilter(plane);
-  filter->SetTimeStep(0.5);
-  filter->SetNumberOfTimeSteps(10);
-  filter->SetOutputInterval(4);
-  EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 0.0, 2.0, 4.0, 5.0 }));
-  filter->SetOutputInterval(5);
-  EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 0.0, 2.5, 5.0 }));
-  filter->SetOutputInterval(std::numeric_limits<int>::max());
-  EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 0.0, 5.0 }));
-  filter->SetNumberOfTimeSteps(0);
-  EXPECT_EQ(PublishedTimes(filter), (std::vector<double>{ 0.0 }));
-}
-
 TEST(TimeContract, FWHMPublishesItsOwnTimes)
 {
   auto plane = Grid(6, 6);
@@ -274,19 +257,6 @@ TEST(TimeContract, AnySeekAmongAThousandStepsRecomputesFew)
     EXPECT_LE(most, 2.0 * std::sqrt(1000.0)) << limit << " MiB";
     EXPECT_EQ(most > 0, limit == 1); // 1 MiB holds 40 states, 512 MiB all
   }
-}
-
-TEST(TimeContract, OnlyStepsNotYetComputedAreComputed)
-{
-  auto plane = Grid(6, 6);
-  AddRough(plane);
-  auto filter = MakeFilter(plane);
-  UpdateAt(filter, 0.0);
-  EXPECT_EQ(filter->GetNumberOfStepsComputed(), 0);
-  UpdateAt(filter, 4.0);
-  EXPECT_EQ(filter->GetNumberOfStepsComputed(), 4);
-  UpdateAt(filter, 5.0);
-  EXPECT_EQ(filter->GetNumberOfStepsComputed(), 5);
 }
 
 TEST(TimeContract, DiffusionTimeDoesNotGoUpstream)

@@ -239,21 +239,6 @@ TEST(Undetermined, MumfordShahHasNoEdgesThere)
   ExpectNaNOnSecondOnly(filter->GetOutput()->GetPointData()->GetScalars());
 }
 
-TEST(Undetermined, DataWithoutAKnownValueAreAnError)
-{
-  const auto surface = TwoSpheres();
-  AddStep<vtkDoubleArray>(surface, false, std::nan(""));
-  surface->GetPointData()->GetScalars()->Fill(std::nan(""));
-  vtkNew<vtkFVMHeatFilter> filter;
-  filter->SetInputData(surface);
-  const Messages messages(filter);
-  filter->Update();
-  ASSERT_EQ(messages.Errors.size(), 1u);
-  EXPECT_NE(messages.Errors[0].find("InputArray \"f\" has no known value"), std::string::npos)
-    << messages.Errors[0];
-  EXPECT_EQ(Result(filter), nullptr);
-}
-
 TEST(Undetermined, ABlockOfThemLeavesTheOthersAsTheyAre)
 {
   const auto known = Sphere(2);

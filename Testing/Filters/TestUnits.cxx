@@ -3,11 +3,20 @@
 #include "FilterTest.h"
 
 #include "vtkFVMHeatFilter.h"
+#include "vtkHarmonicMapFilter.h"
+#include "vtkIntrinsicTVFilter.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkMumfordShahFilter.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
+#include "vtkSurfaceSegmentationFilter.h"
+#include "vtkTensorDiffusionFilter.h"
+#include "vtkTuringTextureFilter.h"
 
 #include <gtest/gtest.h>
+
+#include <functional>
+#include <type_traits>
 
 using namespace FilterTest;
 
@@ -19,6 +28,56 @@ vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkDataObject* surface)
   auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
   filter->SetInputDataObject(surface);
   return filter;
+}
+
+/// The values of the natural units.
+struct NaturalUnits
+{
+  double Length, Range, Time;
+};
+
+template <typename Filter>
+using Change = std::function<void(Filter*)>;
+
+/// A filter in natural units gives what it gives with `convert`, the same settings in the units of
+/// the coordinates and of the data.
+template <typename Filter>
+void ExpectNaturalIsAbsolute(const char* result, double tolerance, const Change<Filter>& set,
+  const std::function<void(Filter*, const NaturalUnits&)>& convert)
+{
+  SCOPED_TRACE(result);
+  auto sphere = Sphere(3);
+  AddPointArray(sphere, "f", 1, [](vtkIdType i, int k) { return 3.0 * Rough(i, k); });
+  AddPointArray(sphere, "color", 3, [](vtkIdType i, int k) { return 2.0 + Rough(i, k); });
+  AddPointArray(sphere, "cap", 1,
+    [&](vtkIdType i, int k)
+    { return (sphere->GetPoint(i)[2] > 0.5 ? 7.0 : 3.0) + 0.1 * Rough(i, k); });
+  sphere->GetPointData()->SetActiveScalars("f");
+  vtkNew<Filter> natural, absolute;
+  for (Filter* const filter : { natural.Get(), absolute.Get() })
+  {
+    filter->SetInputData(sphere);
+    filter->SetResultArrayName(result);
+    set(filter);
+  }
+  natural->Update();
+  NaturalUnits units{ natural->GetMeanEdgeLength(), natural->GetValueRange(), 1.0 };
+  if constexpr (std::is_base_of_v<vtkSurfaceDiffusionAlgorithm, Filter>)
+  {
+    units.Time = natural->GetTimeUnit();
+  }
+  absolute->SetUnitsToAbsolute();
+  convert(absolute, units);
+  absolute->Update();
+  const bool isTexture = natural->IsA("vtkTuringTextureFilter") != 0;
+  const std::string name = result + std::string(isTexture ? "u1" : "");
+  ASSERT_TRUE(Result(natural, name.c_str()) && Result(absolute, name.c_str()));
+  EXPECT_LT(
+    LargestDifference(Result(natural, name.c_str()), Result(absolute, name.c_str())), tolerance);
+  if constexpr (std::is_base_of_v<vtkSurfaceDiffusionAlgorithm, Filter>)
+  {
+    EXPECT_EQ(absolute->GetTimeUnit(), 1.0);
+  }
 }
 
 } // namespace
@@ -91,59 +150,172 @@ TEST(Units, AlphaDoesNotCountInTheRange)
   EXPECT_EQ(filter->GetValueRange(), 8.0);
 }
 
-TEST(Units, AbsoluteTimeUnitIsExactlyOne)
+TEST(Units, NaturalSettingsAreTheAbsoluteOnesInTheUnitsOfLinearModels)
 {
-  auto grid = Grid(5, 4, 0.3);
-  AddRough(grid);
-  auto filter = MakeFilter(grid);
-  filter->SetUnitsToAbsolute();
-  filter->Update();
-  EXPECT_EQ(filter->GetTimeUnit(), 1.0);
+  using Heat = vtkFVMHeatFilter;
+  ExpectNaturalIsAbsolute<Heat>(
+    "heat", 1e-12,
+    [](Heat* f)
+    {
+      f->SetTimeStep(0.7);
+      f->SetFidelityWeight(0.2);
+    },
+    [](Heat* f, const NaturalUnits& u)
+    {
+      EXPECT_NEAR(u.Time, u.Length * u.Length, 1e-12 * u.Time);
+      f->SetTimeStep(0.7 * u.Time);
+      f->SetFidelityWeight(0.2 / u.Time);
+    });
+  using Tensor = vtkTensorDiffusionFilter;
+  for (int model = 0; model < 3; ++model)
+  {
+    ExpectNaturalIsAbsolute<Tensor>(
+      "tensor", 1e-9,
+      [=](Tensor* f)
+      {
+        f->SetModel(model);
+        f->SetNumberOfTimeSteps(4);
+        f->SetFidelityWeight(0.2);
+      },
+      [](Tensor* f, const NaturalUnits& u)
+      {
+        EXPECT_NEAR(u.Time, u.Length * u.Length, 1e-12 * u.Time);
+        f->SetTimeStep(u.Time);
+        f->SetFidelityWeight(0.2 / u.Time);
+        f->SetColorScale(10.0 * u.Length / u.Range);
+        f->SetContrast(0.05 * u.Range / u.Length);
+        f->SetNoiseScale(u.Length);
+        f->SetIntegrationScale(4.0 * u.Length);
+      });
+  }
+  using Turing = vtkTuringTextureFilter;
+  const double rate = 3.0;
+  ExpectNaturalIsAbsolute<Turing>(
+    "texture", 1e-9,
+    [=](Turing* f)
+    {
+      f->SetNumberOfTimeSteps(48);
+      f->SetReactionRate(rate);
+      f->SetDiffusionRate1(22.0); // the default has a size of the surface on coarse ones
+    },
+    [=](Turing* f, const NaturalUnits& u)
+    {
+      EXPECT_NEAR(u.Time, 1.0 / rate, 1e-15);
+      f->SetTimeStep(f->GetTimeStep() / rate);
+      f->SetDiffusionRate1(22.0 * u.Length * u.Length * rate);
+      f->SetDiffusionRate2(2.6 * u.Length * u.Length * rate);
+    });
 }
 
-TEST(Units, NaturalIsAbsoluteInUnitsOfHSquared)
+TEST(Units, NaturalSettingsAreTheAbsoluteOnesInTheUnitsOfTotalVariation)
 {
-  auto sphere = Sphere(3);
-  AddRough(sphere);
-  auto filter = MakeFilter(sphere);
-  filter->SetTimeStep(0.7);
-  filter->SetFidelityWeight(0.2);
-  filter->Update();
-  const auto natural = Copy(Result(filter));
-  const double unit = filter->GetTimeUnit();
-  filter->SetUnitsToAbsolute();
-  filter->SetTimeStep(0.7 * unit);
-  filter->SetFidelityWeight(0.2 / unit);
-  filter->Update();
-  EXPECT_LT(LargestDifference(natural, Result(filter)), 1e-12);
+  using TV = vtkIntrinsicTVFilter;
+  const auto expect = [](double tolerance, const Change<TV>& set)
+  {
+    ExpectNaturalIsAbsolute<TV>(
+      "tv", tolerance,
+      [&](TV* f)
+      {
+        f->SetTimeStep(0.3);
+        f->SetNumberOfTimeSteps(3);
+        f->SetBeta(1e-2);
+        f->SetFidelityWeight(0.7);
+        f->SetChromaticityWeight(1.5);
+        set(f);
+      },
+      [](TV* f, const NaturalUnits& u)
+      {
+        const bool isL1 = f->GetFidelityNorm() == TV::FIDELITY_NORM_L1;
+        const bool isTV = f->GetEdgeFunction() == TV::EDGE_FUNCTION_TOTAL_VARIATION;
+        const double p = f->GetChromaticityExponent();
+        f->SetTimeStep(0.3 * u.Time);
+        f->SetBeta(1e-2 * u.Range * u.Range / (u.Length * u.Length));
+        f->SetEdgeThreshold(0.1 * u.Range / u.Length);
+        f->SetFidelityWeight(0.7 / u.Time * (isL1 ? u.Range : 1.0));
+        f->SetChromaticityWeight(1.5 * u.Range *
+          (isTV ? std::pow(u.Length, p - 1.0) : u.Range * std::pow(u.Length, p - 2.0)));
+      });
+  };
+  const Change<TV> models[] = { [](TV*) {}, [](TV* f) { f->SetFidelityNormToL1(); },
+    [](TV* f) { f->SetTimeIntegratorToImplicit(); }, [](TV* f) { f->SetModeToSteadyState(); },
+    [](TV* f) { f->SetEdgeFunctionToPeronaMalikRational(); },
+    [](TV* f) { f->SetEdgeFunctionToCharbonnier(), f->SetFidelityNormToL1(); },
+    [](TV* f) { f->SetEdgeFunctionToCharbonnier(), f->SetTimeIntegratorToImplicit(); } };
+  for (const Change<TV>& set : models)
+  {
+    expect(1e-7, set);
+  }
+  const Change<TV> ofColors[] = { [](TV*) {},
+    [](TV* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetStopTolerance(1e-8); // the last bits of h decide in which iteration it stops
+    },
+    [](TV* f) { f->SetChromaticityExponent(1.5); },
+    [](TV* f) { f->SetEdgeFunctionToCharbonnier(); } };
+  for (const Change<TV>& set : ofColors)
+  {
+    expect(1e-5, // many alternations amplify the last bits of h
+      [&](TV* f)
+      {
+        SetInputArray(f, 0, "color");
+        f->SetColorModelToChromaticityBrightness();
+        f->SetTolerance(1e-12);
+        set(f);
+      });
+  }
 }
 
-TEST(Units, NaturalSettingsSuitAnySizeAndAnyRange)
+TEST(Units, NaturalSettingsAreTheAbsoluteOnesInTheUnitsOfMapsEdgesAndRegions)
 {
-  auto small = Sphere(3);
-  vtkDataArray* f = AddRough(small);
-  vtkNew<vtkPolyData> large;
-  large->DeepCopy(small);
-  for (vtkIdType i = 0; i < large->GetNumberOfPoints(); ++i)
+  using Map = vtkHarmonicMapFilter;
+  for (const double exponent : { 1.0, 1.5, 2.0 })
   {
-    double p[3];
-    small->GetPoint(i, p);
-    vtkMath::MultiplyScalar(p, 1e3);
-    large->GetPoints()->SetPoint(i, p);
-    large->GetPointData()->GetArray("f")->SetComponent(i, 0, 70.0 * f->GetComponent(i, 0) + 5.0);
+    ExpectNaturalIsAbsolute<Map>(
+      "map", 1e-8,
+      [=](Map* f)
+      {
+        SetInputArray(f, 0, "color");
+        f->SetExponent(exponent);
+        f->SetTimeStep(0.05);
+        f->SetFidelityWeight(0.3);
+      },
+      [=](Map* f, const NaturalUnits& u)
+      {
+        EXPECT_NEAR(u.Time / std::pow(u.Length, exponent), 1.0, 1e-12);
+        f->SetTimeStep(0.05 * u.Time);
+        f->SetFidelityWeight(0.3 / u.Time);
+        f->SetBeta(1e-6 / (u.Length * u.Length));
+      });
   }
-  auto ofSmall = MakeFilter(small);
-  auto ofLarge = MakeFilter(large);
-  for (vtkFVMHeatFilter* filter : { ofSmall.Get(), ofLarge.Get() })
+  using Shah = vtkMumfordShahFilter;
+  for (const bool automatic : { false, true }) // in which case the defaults of the two are ignored
   {
-    filter->SetFidelityWeight(0.1);
-    filter->Update();
+    ExpectNaturalIsAbsolute<Shah>(
+      "edges", 1e-9,
+      [=](Shah* f)
+      {
+        SetInputArray(f, 0, "cap");
+        f->SetAutomaticThreshold(automatic);
+      },
+      [=](Shah* f, const NaturalUnits& u)
+      {
+        f->SetEdgeWidth(2.0 * u.Length);
+        f->SetSmoothingLength(8.0 * (automatic ? 1.0 : u.Length));
+        f->SetEdgeThreshold(0.2 * (automatic ? 1.0 : u.Range));
+      });
   }
-  for (vtkIdType i = 0; i < small->GetNumberOfPoints(); ++i)
-  {
-    EXPECT_NEAR(
-      70.0 * Result(ofSmall)->GetComponent(i, 0) + 5.0, Result(ofLarge)->GetComponent(i, 0), 1e-10);
-  }
+  using Regions = vtkSurfaceSegmentationFilter;
+  ExpectNaturalIsAbsolute<Regions>(
+    "regions", 1e-6,
+    [](Regions* f)
+    {
+      SetInputArray(f, 0, "cap");
+      f->AutomaticFidelityOff();
+      f->SetFidelityWeight(0.6);
+    },
+    [](Regions* f, const NaturalUnits& u)
+    { f->SetFidelityWeight(0.6 / (u.Length * u.Range * u.Range)); });
 }
 
 TEST(Units, BlocksOfCompositeDataShareLengthAndRange)
@@ -221,33 +393,4 @@ TEST(Units, BlocksOfCompositeDataShareLengthAndRange)
     EXPECT_NEAR(HistoryAt(filter, 10, "Total_0"), total, 1e-9);
     EXPECT_EQ(fine->GetPointData()->GetArray("fDiffused"), nullptr); // the input is unchanged
   }
-}
-
-TEST(Units, BlocksWithoutTheArrayPassThroughAndBadOnesAreErrors)
-{
-  auto with = Grid(4, 4);
-  auto without = Grid(5, 5);
-  AddRough(with);
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, without);
-  blocks->SetBlock(1, with);
-  blocks->SetBlock(2, vtkSmartPointer<vtkTable>::New());
-  auto filter = MakeFilter(blocks);
-  SetInputArray(filter, 0, "f");
-  Messages messages(filter);
-  filter->Update();
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-  EXPECT_TRUE(messages.Errors.empty());
-  EXPECT_EQ(vtkPolyData::SafeDownCast(output->GetBlock(0))->GetPointData()->GetNumberOfArrays(), 0);
-  EXPECT_TRUE(
-    vtkPolyData::SafeDownCast(output->GetBlock(1))->GetPointData()->HasArray("fDiffused"));
-  EXPECT_NE(vtkTable::SafeDownCast(output->GetBlock(2)), nullptr);
-
-  SetInputArray(filter, 1, "nosuchmask"); // must not mean "no mask"
-  filter->Update();
-  ASSERT_EQ(messages.Errors.size(), 1u);
-  EXPECT_NE(messages.Errors[0].find("nosuchmask"), std::string::npos) << messages.Errors[0];
-  output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-  EXPECT_FALSE(
-    vtkPolyData::SafeDownCast(output->GetBlock(1))->GetPointData()->HasArray("fDiffused"));
 }

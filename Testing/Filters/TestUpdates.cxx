@@ -21,26 +21,7 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstddef>
-#include <cstdlib>
-
 using namespace FilterTest;
-
-// Counting allocations replaces malloc, which sanitizers replace themselves.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define SURFACEDIFFUSION_COUNT_ALLOCATIONS
-static std::atomic<long> NumberOfAllocations{ 0 };
-extern "C"
-{
-  void* __libc_malloc(std::size_t size);
-  void* malloc(std::size_t size)
-  {
-    NumberOfAllocations.fetch_add(1, std::memory_order_relaxed);
-    return __libc_malloc(size);
-  }
-}
-#endif
 
 namespace
 {
@@ -203,27 +184,6 @@ TEST(Updates, ChangesOfTheOutputAloneRecomputeNothing)
   EXPECT_NE(Result(filter, "unrelated"), nullptr);
 }
 
-TEST(Updates, MoreTimeStepsComputeOnlyTheNewOnes)
-{
-  auto sphere = Sphere(3);
-  AddRough(sphere);
-  for (const bool timeSteps : { false, true })
-  {
-    auto filter = MakeFilter(sphere);
-    filter->SetGenerateTimeSteps(timeSteps);
-    filter->Update();
-    filter->SetNumberOfTimeSteps(12);
-    filter->Update();
-    EXPECT_EQ(filter->GetNumberOfStepsComputed(), 12);
-    auto fresh = MakeFilter(sphere);
-    fresh->SetNumberOfTimeSteps(12);
-    fresh->Update();
-    EXPECT_TRUE(Identical(Result(filter), Result(fresh)));
-    EXPECT_EQ(History(filter)->GetNumberOfRows(), 13);
-    EXPECT_EQ(HistoryAt(filter, 12, "Total_0"), HistoryAt(fresh, 12, "Total_0"));
-  }
-}
-
 TEST(Updates, DataThatDependOnTheMeshAloneAreReused)
 {
   auto sphere = Sphere(4);
@@ -245,39 +205,6 @@ TEST(Updates, DataThatDependOnTheMeshAloneAreReused)
   sphere->Modified();
   filter->Update();
   EXPECT_LT(first, kept); // building the surface reports first
-}
-
-TEST(Updates, LaterStepsAllocateNothing)
-{
-#ifndef SURFACEDIFFUSION_COUNT_ALLOCATIONS
-  GTEST_SKIP() << "allocations cannot be counted in this build";
-#else
-  auto sphere = Sphere(4);
-  AddRough(sphere, 3);
-  const auto allocationsOf = [&](int steps, int integrator, bool timeSteps)
-  {
-    auto filter = MakeFilter(sphere);
-    filter->SetNumberOfThreads(1); // VTK's back ends allocate for their threads
-    filter->SetSolverToConjugateGradient();
-    filter->SetTimeIntegrator(integrator);
-    filter->SetGenerateTimeSteps(timeSteps);
-    filter->SetNumberOfTimeSteps(steps);
-    filter->UpdateInformation(); // the list of published times grows with the steps
-    const long start = NumberOfAllocations;
-    filter->Update();
-    return NumberOfAllocations - start;
-  };
-  for (const bool timeSteps : { false, true })
-  {
-    for (const int integrator : { vtkFVMHeatFilter::TIME_INTEGRATOR_FIRST_ORDER,
-           vtkFVMHeatFilter::TIME_INTEGRATOR_SECOND_ORDER })
-    {
-      const long few = allocationsOf(2, integrator, timeSteps);
-      EXPECT_GT(few, 0);
-      EXPECT_LE(allocationsOf(60, integrator, timeSteps), few) << timeSteps << integrator;
-    }
-  }
-#endif
 }
 
 TEST(Updates, OneOfSeveralPiecesIsAnErrorUnlessDeclaredWhole)

@@ -5,15 +5,7 @@
 import unittest
 
 import numpy as np
-from surfacediffusion import (
-    Surface, harmonic_map, heat, intrinsic_tv, mumford_shah, segment, sphere, tensor_diffusion,
-    turing_texture,
-)
-
-
-def face_areas(surface):
-    a, b, c = (surface.points[surface.triangles[:, i]] for i in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+from surfacediffusion import Surface, heat, intrinsic_tv, sphere
 
 
 def quad_torus(n=24, m=16):
@@ -48,54 +40,6 @@ class TestFaces(unittest.TestCase):
         np.testing.assert_allclose(ball.normals, ball.points / 2, atol=5e-3)
         areas = np.full(ball.n_points, 0.5)
         self.assertEqual(Surface(ball.points, ball.faces, areas).area, ball.n_points / 2)
-
-    def test_results_have_the_shape_of_the_values_and_the_total(self):
-        areas = face_areas(self.surface)
-        for function in (heat, intrinsic_tv):
-            for keep in (True, False):
-                result = function(self.surface, self.noise, time_step=1, keep_face_detail=keep)
-                self.assertEqual(result.shape, self.noise.shape)
-                np.testing.assert_allclose(areas @ result, areas @ self.noise, atol=1e-11)
-        self.assertEqual(
-            heat(self.surface, self.noise, time_step=1, result_on_faces=False).shape,
-            (self.surface.n_points,))
-        two = np.stack([self.noise, -self.noise], axis=1)
-        self.assertEqual(heat(self.surface, two, time_step=1).shape, two.shape)
-
-    def test_tensors_diffuse_values_of_faces(self):
-        areas = face_areas(self.surface)
-        options = {"metric": "Fixed", "number_of_time_steps": 4}
-        kept, mean = (tensor_diffusion(self.surface, self.noise, keep_face_detail=keep, **options)
-                      for keep in (True, False))
-        for result in (kept, mean):
-            self.assertEqual(result.shape, self.noise.shape)
-            np.testing.assert_allclose(areas @ result, areas @ self.noise, atol=1e-11)
-            self.assertLess(result.std(), 0.6 * self.noise.std())
-        self.assertGreater(np.abs(kept - mean).max(), 1e-3)
-        of_points = tensor_diffusion(self.surface, self.noise, result_on_faces=False, **options)
-        self.assertEqual(of_points.shape, (self.surface.n_points,))
-        for model in ("Beltrami", "CoherenceEnhancing", "EdgeEnhancing"):
-            same = tensor_diffusion(self.surface, np.stack([self.noise, -self.noise], axis=1),
-                                    model=model, number_of_time_steps=0)
-            np.testing.assert_array_equal(same, np.stack([self.noise, -self.noise], axis=1))
-        torus = quad_torus()
-        values = np.random.default_rng(2).normal(size=torus.n_points)
-        of_faces = tensor_diffusion(torus, values, on_faces=True, number_of_time_steps=1)
-        self.assertGreater(np.abs(of_faces - tensor_diffusion(
-            torus, values, number_of_time_steps=1)).max(), 0.1)
-
-    def test_nothing_changes_without_a_step(self):
-        same = heat(self.surface, self.noise, number_of_time_steps=0, time_step=1)
-        np.testing.assert_array_equal(same, self.noise)
-
-    def test_noise_leaves_with_the_detail_too(self):
-        def deviation(**keywords):
-            result = heat(self.surface, self.noise, time_step=1, **keywords)
-            return np.std(result) / np.std(self.noise)
-
-        self.assertLess(deviation(), 0.12)
-        self.assertEqual(deviation(number_of_time_steps=0), 1.0)
-        self.assertLess(deviation(number_of_time_steps=0, keep_face_detail=False), 0.5)
 
     def test_many_columns_are_those_of_single_runs(self):
         many = np.random.default_rng(1).normal(size=(self.surface.n_faces, 40))
@@ -156,29 +100,6 @@ class TestFaces(unittest.TestCase):
                     function(surface, values, fidelity=w, fidelity_weight=1.0, on_faces=False, **options)
                     for surface, w in ((quads, weights), (triangles, np.repeat(weights, 2))))
                 np.testing.assert_allclose(found, expected, atol=1e-9)
-
-    def test_all_functions_take_faces(self):
-        surface, m = self.surface, self.surface.n_faces
-        centres = surface.points[surface.triangles].mean(axis=1)
-        step = np.where(centres[:, 2] > 0.3, 1.0, 0.0)
-        edges = mumford_shah(surface, step)
-        self.assertEqual((edges.values.shape, edges.edges.shape), ((m,), (m,)))
-        regions = segment(surface, step)
-        self.assertEqual((regions.values.shape, regions.probabilities.shape), ((m,), (m, 2)))
-        far = np.abs(centres[:, 2] - 0.3) > 0.1
-        np.testing.assert_array_equal(regions.values[far], 1 + (step[far] > 0.5))
-        vectors = harmonic_map(surface, centres).values
-        np.testing.assert_allclose(np.linalg.norm(vectors, axis=1), 1.0, atol=1e-12)
-        colors = (255 * np.abs(centres)).astype(np.uint8)
-        alpha = np.concatenate([colors, np.full((m, 1), 77, np.uint8)], axis=1)
-        painted = harmonic_map(surface, alpha).values
-        self.assertEqual((painted.dtype, painted.shape), (np.uint8, (m, 4)))
-        self.assertTrue((painted[:, 3] == 77).all())
-        on_points = intrinsic_tv(surface, alpha, result_on_faces=False)
-        self.assertTrue((on_points[:, 3] == 255).all())
-        texture = turing_texture(surface, mask=centres[:, 0] > 0.5, mask_mode="Exclude",
-                                 number_of_time_steps=2)
-        self.assertEqual(texture.values.shape, (surface.n_points, 2))
 
     def test_errors_name_faces(self):
         with self.assertRaisesRegex(ValueError, r"one row per point, or \(5120,\)"):

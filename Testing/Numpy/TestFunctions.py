@@ -26,23 +26,6 @@ def bands(surface, degree=2):
 
 
 class Heat(unittest.TestCase):
-    def test_spherical_harmonic_decays_at_its_eigenvalue(self):
-        surface = sd.sphere(5)
-        start = bands(surface)
-        time_end = 0.1
-        end = sd.heat(surface, start, time_step=time_end / 20, number_of_time_steps=20,
-                      units="Absolute")
-        decay = np.dot(end, start) / np.dot(start, start)
-        self.assertAlmostEqual(decay, np.exp(-6 * time_end), delta=1e-3)
-
-    def test_fwhm_gives_the_gaussian_of_that_width(self):
-        # A harmonic of eigenvalue 6/r^2 decays by exp(-6 t/r^2), where t = FWHM^2 / (16 ln 2).
-        surface = sd.sphere(5, radius=10.0)
-        start = bands(surface)
-        end = sd.heat(surface, start, fwhm=4.0)
-        decay = np.dot(end, start) / np.dot(start, start)
-        self.assertAlmostEqual(decay, np.exp(-6 * 16 / (16 * np.log(2)) / 100), delta=1e-4)
-
     def test_many_columns_have_the_bits_of_a_run_of_all_of_them(self):
         # Many columns are solved in panels, which share their missing points; states have all of them.
         surface = sd.sphere(3)
@@ -82,51 +65,6 @@ class Heat(unittest.TestCase):
         sd.heat(surface, np.ones((surface.n_points, 150)), progress=fractions.append, time_step=1)
         self.assertEqual(fractions, sorted(fractions))
         self.assertEqual(fractions[-1], 1.0)
-
-    def test_nan_and_mask_are_missing(self):
-        surface = sd.sphere(4)
-        values = surface.points[:, 2] + 5.0
-        hole = surface.points[:, 0] > 0.9
-        with_nan = np.where(hole, np.nan, values)
-        filled = sd.heat(surface, with_nan, mode="SteadyState", hold_known_values=True)
-        np.testing.assert_array_equal(
-            filled, sd.heat(surface, values, mask=hole, mode="SteadyState", hold_known_values=True))
-        np.testing.assert_array_equal(filled[~hole], values[~hole])
-        self.assertLess(np.abs(filled - values)[hole].max(), 0.01)
-
-    def test_excluded_points_keep_their_value(self):
-        surface = sd.sphere(4)
-        values = np.random.default_rng(1).normal(size=surface.n_points)
-        wall = surface.points[:, 2] > 0.5
-        smooth = sd.heat(surface, values, fwhm=0.3, mask=wall, mask_mode="Exclude")
-        np.testing.assert_array_equal(smooth[wall], values[wall])
-        self.assertLess(smooth[~wall].std(), 0.6 * values.std())
-
-    def test_fixed_values_stay(self):
-        surface = sd.sphere(3)
-        values = np.random.default_rng(1).normal(size=surface.n_points)
-        fixed = np.zeros(surface.n_points, dtype=int)
-        fixed[:7] = 3
-        smooth = sd.heat(surface, values, fwhm=1.0, fixed=fixed)
-        np.testing.assert_array_equal(smooth[:7], values[:7])
-        self.assertTrue((smooth[7:] != values[7:]).all())
-
-    def test_directions_at_points_and_faces_smear(self):
-        surface = sd.sphere(4)
-        x, y, z = surface.points.T
-        around = np.stack([-y, x, 0 * z], axis=1)
-        on_faces = around[surface.triangles].mean(axis=1)
-        noise = np.random.default_rng(1).normal(size=surface.n_points)
-        for directions in (around, on_faces):
-            smeared = sd.heat(surface, noise, directions=directions, across_diffusivity=0.0,
-                              time_step=50.0)
-            north = sd.heat(surface, noise, directions=directions, along_diffusivity=0.0,
-                            time_step=50.0)
-            rough = [np.mean((np.asarray(u)[surface.triangles[:, 0]]
-                              - np.asarray(u)[surface.triangles[:, 1]]) ** 2)
-                     for u in (noise, smeared, north)]
-            self.assertLess(rough[1], rough[0])
-            self.assertGreater(np.abs(smeared - north).max(), 0.1)
 
 
 class Types(unittest.TestCase):
@@ -230,16 +168,6 @@ class Surfaces(unittest.TestCase):
                 warnings.simplefilter("error")
                 sd.direction_field((points, faces), hints, method="Hints", angle=angle)
 
-    def test_principal_directions_of_a_cylinder_follow_its_axis(self):
-        angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 40, endpoint=False),
-                                    np.linspace(0, 4, 30), indexing="ij")
-        points = np.stack([np.cos(angle), np.sin(angle), height], axis=-1).reshape(-1, 3)
-        index = np.arange(1200).reshape(40, 30)
-        a, b = index[:, :-1].ravel(), np.roll(index, -1, axis=0)[:, :-1].ravel()
-        field = sd.direction_field(sd.Surface(points, np.stack([a, b, b + 1, a + 1], axis=1)))
-        inside = np.abs(points[a][:, 2] - 2) < 1
-        self.assertGreater(np.abs(field[inside, 2]).min(), 0.99)
-
     def test_later_calls_keep_the_mesh(self):
         # Measured in work, not in time: the second call of a run with the same input does no step.
         surface = sd.sphere(4)
@@ -321,15 +249,6 @@ class Edges(unittest.TestCase):
             self.assertEqual(result.curves[0].dtype, np.float64)  # as coordinates, for any data
             self.assertAlmostEqual(result.edge_length / (2 * np.pi * np.sqrt(0.75)), 1, delta=0.01)
             self.assertLess(np.abs(result.values[:, 0] - clean).max(), 0.1)
-
-    def test_steps_lower_the_energy_between_stages(self):
-        surface = sd.sphere(4)
-        states = list(sd.mumford_shah_steps(surface, np.sign(bands(surface))))
-        energies = [state.history["Energy"][-1] for state in states]
-        self.assertLessEqual(sum(np.diff(energies) > 0), 2)  # where the width is halved
-        self.assertEqual(states[0].edges.max(), 0.0)
-        self.assertEqual(states[0].curves, [])
-        self.assertGreater(states[-1].edges.max(), 0.9)
 
     def test_a_given_threshold_or_length_switches_the_automatic_ones_off(self):
         surface = sd.sphere(4)
@@ -539,20 +458,6 @@ class Results(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "time_step is 0"):
             sd.heat_steps(self.surface, self.values, time_step=0)
 
-    def test_energy_falls_and_times_grow(self):
-        result = sd.heat_steps(self.surface, self.values, time_step=1, number_of_time_steps=4).last()
-        self.assertEqual(len(result.times), 5)
-        self.assertTrue((np.diff(result.history["Energy"]) < 0).all())
-        self.assertTrue((np.diff(result.times) > 0).all())
-
-    def test_history_has_the_integral_of_each_column(self):
-        values = np.stack([self.values + 3, self.values - 1], axis=1)
-        history = sd.heat_steps(self.surface, values, fwhm=0.5).last().history
-        for k, mean in ((0, 3), (1, -1)):
-            totals = history[f"Total_{k}"]
-            self.assertAlmostEqual(totals[0], 4 * np.pi * (mean + self.values.mean()), delta=0.5)
-            np.testing.assert_allclose(totals, totals[0], rtol=1e-12)
-
     def test_automatic_fidelity_reports_its_weight(self):
         result = sd.heat_steps(self.surface, self.values + 3 * self.surface.points[:, 2],
                                automatic_fidelity=True, mode="SteadyState").last()
@@ -566,12 +471,6 @@ class Results(unittest.TestCase):
         np.testing.assert_array_equal(np.asarray(result), result.values)
         self.assertEqual(np.asarray(result, dtype=np.float32).dtype, np.float32)
 
-    def test_texture_is_made_of_its_seed(self):
-        a, b, c = (sd.turing_texture(self.surface, number_of_time_steps=20, seed=seed).values
-                   for seed in (1, 1, 2))
-        np.testing.assert_array_equal(a, b)
-        self.assertGreater(np.abs(a - c).max(), 0.0)
-
     def test_texture_has_the_colours_asked_for(self):
         result = sd.turing_texture(self.surface, number_of_time_steps=20, color_output=True,
                                    low_color=(1, 0, 0), high_color=(0, 0, 1))
@@ -584,23 +483,12 @@ class Results(unittest.TestCase):
         self.assertLess(len(states), 20)
         self.assertLess(states[-1].step, 1000)
 
-    def test_normals_of_a_noisy_sphere_are_radial_again(self):
-        noise = np.random.default_rng(1).normal(scale=0.01, size=(self.surface.n_points, 1))
-        noisy = sd.Surface(self.surface.points * (1 + noise), self.surface.triangles)
-        result = sd.harmonic_map(noisy, move_vertices=True)
-        before = np.einsum("ij,ij->i", noisy._point_normals(), self.surface.points)
-        after = np.einsum("ij,ij->i", result.values, self.surface.points)
-        self.assertLess(np.mean(1 - after), 0.5 * np.mean(1 - before))
-        self.assertGreater(result.mean_displacement, 0.0)
-        self.assertLess(np.linalg.norm(result.points, axis=1).std(), 0.5 * noise.std())
-
-
     def test_zero_steps_move_no_point_of_a_coarse_shape(self):
         octahedron = sd.Surface(np.vstack([np.eye(3), -np.eye(3)]), [
             [0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]])
         result = sd.harmonic_map(octahedron, move_vertices=True, number_of_time_steps=0)
         np.testing.assert_array_equal(result.points, octahedron.points)
-        self.assertEqual(result.maximum_displacement, 0)
+        self.assertEqual((result.maximum_displacement, result.mean_displacement), (0, 0))
 
 
 class Warnings(unittest.TestCase):
@@ -637,22 +525,6 @@ class Warnings(unittest.TestCase):
         surface = sd.Surface(points, [[0, 1, 2], [3, 5, 4]])
         with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "set merge_coincident_points"):
             sd.heat(surface, np.zeros(6), time_step=1)
-
-    def test_noise_that_was_smoothed_is_not_taken_for_white_noise(self):
-        surface = sd.sphere(5)
-        white = np.random.default_rng(7).normal(size=surface.n_points)
-        smoothed = sd.heat(surface, white, fwhm=0.25)
-        smoothed /= smoothed.std()
-        for function in sd.heat, sd.intrinsic_tv:
-            with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "noise_level: the data show no white "
-                                       r"noise.*the noise is 1 \(set noise_level\)"):
-                function(surface, smoothed, automatic_fidelity=True, mode="steady_state")
-            with warnings.catch_warnings():
-                warnings.simplefilter("error")
-                function(surface, surface.points[:, 2] + 0.1 * white, automatic_fidelity=True,
-                         mode="steady_state")
-                function(surface, smoothed, automatic_fidelity=True, noise_level=0.1,
-                         mode="steady_state")
 
 
 class Interruption(unittest.TestCase):
@@ -885,16 +757,6 @@ class Segment(unittest.TestCase):
             self.assertAlmostEqual(steps.sum(), curve.length, places=12)
             np.testing.assert_array_equal(result.values, 1 + result.probabilities.argmax(axis=1))
             np.testing.assert_allclose(result.means.ravel(), [0, 1], atol=0.05)
-
-    def test_fidelity_of_zero_is_missing(self):
-        surface = sd.sphere(4)
-        values = (surface.points[:, 2] > 0.5) + surface.points[:, 0]
-        hole = surface.points[:, 1] > 0.6
-        expected = sd.segment(surface, np.where(hole, 9.0, values), mask=hole)
-        found = sd.segment(surface, np.where(hole, 9.0, values), fidelity=np.where(hole, 0.0, 1.0))
-        np.testing.assert_array_equal(found.probabilities, expected.probabilities)
-        self.assertFalse(np.array_equal(
-            sd.segment(surface, values).probabilities, expected.probabilities))
 
     def test_terms_and_seeds(self):
         surface = sd.sphere(4)

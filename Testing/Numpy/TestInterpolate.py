@@ -90,17 +90,6 @@ class Values(unittest.TestCase):
         of_points, _ = interpolate(BALL, given, exact=True, result_on_faces=False)
         self.assertEqual(of_points.values.shape, (N,))
 
-    def test_noise_is_smoothed_by_default(self):
-        noise = np.random.default_rng(2).normal(scale=0.2, size=N)
-        result, _ = interpolate(BALL, sparse(5, field(BALL.points) + noise))
-        error = np.sqrt(np.mean((result.values - field(BALL.points)) ** 2))
-        self.assertLess(error, 0.2 / 3)
-        self.assertGreater(result.smoothing[0], 0.0)
-        self.assertAlmostEqual(result.noise_level[0], 0.2, delta=0.03)
-        again, _ = interpolate(BALL, sparse(5, field(BALL.points) + noise),
-                               smoothing=result.smoothing[0])
-        np.testing.assert_allclose(again.values, result.values, atol=1e-9)
-
 
 class Weights(unittest.TestCase):
     def test_weights_are_reciprocal_variances(self):
@@ -124,27 +113,6 @@ class Weights(unittest.TestCase):
         few, _ = interpolate(BALL, field(places)[kept], places[kept])
         np.testing.assert_array_equal(some.values, few.values)
         self.assertEqual(some.number_of_values, 30)
-
-    def test_errors_grow_with_the_noise_level_and_away_from_values(self):
-        places = places_around(40)[:20]  # the lower half
-        low, _ = interpolate(BALL, field(places), places, smoothing=0.5, noise_level=1.0,
-                             compute_error=True)
-        high, _ = interpolate(BALL, field(places), places, smoothing=0.5, noise_level=3.0,
-                              compute_error=True)
-        np.testing.assert_allclose(high.error, 3.0 * low.error, rtol=1e-9)
-        z = BALL.points[:, 2]
-        self.assertGreater(low.error[z > 0.8].min(), 2.0 * low.error[z < -0.2].max())
-
-
-class Bounds(unittest.TestCase):
-    def test_the_range_is_kept(self):
-        values = np.where(places_around(30)[:, 2] > 0, 1.0, 0.0)
-        free, _ = interpolate(BALL, values, places_around(30))
-        self.assertGreater(free.values.max(), 1.01)
-        self.assertLess(free.values.min(), -0.01)
-        kept, found = interpolate(BALL, values, places_around(30), keep_range=True)
-        self.assertEqual(found, [])
-        self.assertEqual((kept.values.min(), kept.values.max()), (0.0, 1.0))
 
 
 class Boundary(unittest.TestCase):
@@ -196,61 +164,6 @@ class BadValues(unittest.TestCase):
                 ("values has no known value", (np.full(N, np.nan),))):
             with self.assertRaisesRegex(ValueError, message):
                 sd.interpolate(BALL, *arguments)
-
-    def test_equal_values_give_the_constant(self):
-        result, found = interpolate(BALL, np.full(5, 4.5), places_around(5))
-        self.assertEqual(found, ["all known values are equal, and so is the result"])
-        np.testing.assert_allclose(result.values, 4.5, atol=1e-12)
-
-    def test_fewer_than_three_values_hold(self):
-        result, found = interpolate(BALL, sparse(2000))
-        self.assertEqual(found, ["fewer than 3 places have a value, too few for automatic_smoothing: "
-                                 "the values hold exactly"])
-        for i in (0, 2000):
-            self.assertAlmostEqual(result.values[i], field(BALL.points)[i], delta=1e-12)
-
-    def test_contradicting_values_count_as_their_weighted_mean(self):
-        places = np.vstack([BALL.points[:40:4], BALL.points[8]])
-        values = np.append(field(BALL.points[:40:4]), field(BALL.points[8:9]) + 2.0)
-        weights = np.where(np.arange(11) == 2, 3.0, 1.0)
-        result, found = interpolate(BALL, values, places, exact=True, fidelity=weights)
-        self.assertEqual(found, ["1 place has different values: their weighted mean counts"])
-        self.assertAlmostEqual(result.values[8], values[2] + 0.5, delta=1e-12)
-
-    def test_far_values_are_counted(self):
-        places = np.vstack([places_around(20), [[0.0, 0.0, 9.0], [7.0, 0.0, 0.0]]])
-        values = np.append(field(places[:20]), [50.0, -50.0])
-        result, found = interpolate(BALL, values, places, exact=True, maximum_distance=0.5)
-        self.assertEqual(found, ["2 values are farther from the surface than maximum_distance 0.5 and "
-                                 "left out"])
-        self.assertEqual((result.number_of_values, result.number_of_far_values), (20, 2))
-        near, _ = interpolate(BALL, values[:20], places[:20], exact=True)
-        np.testing.assert_array_equal(result.values, near.values)
-        with self.assertRaisesRegex(ValueError, "farther than maximum_distance 0.5, or where mask "
-                                                "excludes it; allowed: one value on it"):
-            sd.interpolate(BALL, values[20:], places[20:], maximum_distance=0.5)
-
-    def test_components_without_values_are_nan(self):
-        two = sd.Surface(np.vstack([BALL.points, BALL.points + 5.0]),
-                         np.vstack([BALL.triangles, BALL.triangles + N]))
-        result, found = interpolate(two, field(places_around(20)), places_around(20), exact=True,
-                                    compute_error=True)
-        self.assertEqual(len(found), 1)
-        self.assertIn("1 connected component has no known value", found[0])
-        for array in (result.values, result.error):
-            self.assertTrue(np.isfinite(array[:N]).all())
-            self.assertTrue(np.isnan(array[N:]).all())
-
-    def test_values_outside_of_the_mask_are_counted(self):
-        south = BALL.points[:, 2] < 0.0
-        result, found = interpolate(BALL, field(places_around(20)), places_around(20), exact=True,
-                                    mask=south, mask_mode="Exclude")
-        self.assertEqual(found, ["10 values are where mask excludes the surface, and left out"])
-        self.assertEqual(result.number_of_values, 10)
-        np.testing.assert_array_equal(np.isnan(result.values), south)
-        of_region, _ = interpolate(BALL, field(places_around(20)), places_around(20), exact=True,
-                                   roi=~south)
-        np.testing.assert_array_equal(of_region.values, result.values)
 
     def test_what_is_not_allowed_is_named(self):
         places = places_around(5)

@@ -424,34 +424,6 @@ class Meshes(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "array is None, and there are no active scalars"):
             interpolate(mesh, points=pyvista.PolyData(mesh.points[:5]))
 
-    def test_values_of_points_and_cells_are_interpolated(self):
-        mesh = noisy_sphere()
-        few = np.arange(mesh.n_points) % 7 == 0
-        mesh["few"] = np.where(few, mesh.points[:, 2].astype(float), np.nan)
-        result, report = interpolate(mesh, "few", exact=True, return_result=True)
-        np.testing.assert_array_equal(result["fewInterpolated"], report.values)
-        np.testing.assert_allclose(result["fewInterpolated"][few], mesh["few"][few], atol=1e-12)
-        self.assertEqual(report.number_of_values, few.sum())
-        heights = mesh.cell_centers().points[:, 2]
-        mesh.cell_data["ofCells"] = np.where(np.arange(mesh.n_cells) % 9 == 0, heights, np.nan)
-        cells = interpolate(mesh, "ofCells", exact=True)
-        self.assertLess(np.abs(cells.cell_data["ofCellsInterpolated"] - heights).max(), 0.05)
-        points = interpolate(mesh, "ofCells", exact=True, result_on_faces=False)
-        self.assertIn("ofCellsInterpolated", points.point_data)
-
-    def test_normals_and_moved_points(self):
-        mesh = pyvista.Icosphere(nsub=3)
-        mesh.clear_data()
-        noise = 1 + np.random.default_rng(1).normal(scale=0.02, size=(mesh.n_points, 1))
-        mesh.points = (mesh.points * noise).astype(np.float32)
-        before = mesh.points.copy()
-        moved = harmonic_map(mesh, move_vertices=True)
-        np.testing.assert_array_equal(mesh.points, before)
-        self.assertEqual(moved.points.dtype, np.float32)
-        self.assertLess(np.linalg.norm(moved.points, axis=1).std(),
-                        0.6 * np.linalg.norm(mesh.points, axis=1).std())
-        self.assertEqual(moved.point_data.active_normals_name, "NormalsHarmonic")
-
     def test_times_and_history(self):
         mesh = noisy_sphere()
         states, results = heat(mesh, "f", time_step=1.0, times=[3.0, 0.0, 1.5, 99.0],

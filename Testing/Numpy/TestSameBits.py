@@ -101,11 +101,18 @@ class SameBits(unittest.TestCase):
         self.around = np.stack([-y, x, 0 * z], axis=1)
         self.normals = self.points + 0.1 * self.random.normal(size=(n, 3))
         self.rates = np.tile([30.0, 20.0, 3.0, 2.0], (m, 1))
+        corners = [np.asarray(face) for face in self.faces]
+        self.around_of_faces = np.array([self.around[face].mean(axis=0) for face in corners])
+        self.other_part = x > 1.9
+        self.faces_of_other_part = np.array([self.other_part[face].all() for face in corners])
 
     def test_all_functions(self):
         x = self.points[:, 0]
         nan = np.where(self.mask != 0, np.nan, self.values)
         colours = self.random.integers(0, 256, (len(self.points), 4), np.uint8)
+        bytes_of_faces = self.random.integers(0, 256, (len(self.faces), 4), np.uint8)
+        positive = 1 + np.abs(self.values)
+        unknown = np.where(self.other_part, np.nan, self.values)
         used = np.zeros(len(x), np.uint8)
         some = np.where(np.arange(len(x)) % 300 == 9, np.arange(len(x)), 0)
         used[np.concatenate([np.asarray(face) for face in self.faces])] = 1
@@ -129,6 +136,26 @@ class SameBits(unittest.TestCase):
                       .astype(np.uint8)}, {"Mode": "SteadyState", "HoldKnownValues": True}),
             ("heat", {"values": self.columns, "directions": self.around},
              {"AcrossDiffusivity": 0.1, "Units": "Absolute", "TimeStep": 0.002}),
+            ("heat", {"values": self.columns, "directions": self.around_of_faces},
+             {"AcrossDiffusivity": 0.1, "TimeStep": 2.0}),
+            *((function, {"values": self.of_faces, "mask": (self.of_faces[:, 0] > 1.5).astype(np.uint8)}, properties)
+              for function, properties in (
+                  ("heat", {"TimeStep": 1.0}), ("heat", {"TimeStep": 1.0, "KeepCellDetail": False}),
+                  ("heat", {"TimeStep": 1.0, "ResultOnCells": False}),
+                  ("heat", {"TimeStep": 1.0, "MaskMode": "Exclude"}), ("intrinsic_tv", {}),
+                  ("mumford_shah", {"AutomaticThreshold": False, "EdgeThreshold": 0.4}),
+                  ("segment", {"AutomaticFidelity": False, "FidelityWeight": 50.0, "StopTolerance": 0.1}))),
+            ("intrinsic_tv", {"values": bytes_of_faces}, {}),
+            ("intrinsic_tv", {"values": bytes_of_faces}, {"ResultOnCells": False}),
+            ("harmonic_map", {"vectors": bytes_of_faces}, {"NumberOfTimeSteps": 2}),
+            # a part without a known value
+            *((function, {"values": unknown}, properties) for function, properties in (
+                ("heat", {"TimeStep": 1.0}), ("intrinsic_tv", {"Mode": "SteadyState"}),
+                ("tensor_diffusion", {"NumberOfTimeSteps": 2}),
+                ("mumford_shah", {"AutomaticThreshold": False, "EdgeThreshold": 1.0}), ("segment", {}))),
+            ("heat", {"values": np.where(self.faces_of_other_part[:, None], np.nan, self.of_faces)}, {"TimeStep": 1.0}),
+            *(("heat", {"values": (50 * positive).astype(dtype), "mask": self.other_part.astype(np.uint8)},
+               {"TimeStep": 1.0}) for dtype in (np.float32, np.uint8, np.int32)),
             ("heat", {"values": self.values, "mask": self.mask},
              {"MaskMode": "Exclude", "FWHM": 0.2, "Solver": "Multigrid"}),
             ("heat", {"values": self.values}, {"AutomaticFidelity": True, "Mode": "SteadyState"}),

@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <ostream>
 #include <string>
@@ -40,6 +41,8 @@ struct RandomProperty
   std::function<void(Filter*, Dice&)> Set; ///< mostly to an allowed value
   std::function<void(Filter* from, Filter* to)> Copy;
   std::function<bool(Filter*, Filter*)> Equal;
+  /// Sets a value that no number or choice allows, and returns it; empty if the property is neither.
+  std::function<std::string(Filter*)> SetForbidden = [](Filter*) { return std::string(); };
 };
 
 struct FilterClass
@@ -74,6 +77,35 @@ inline bool SameValue(const double* a, const double* b)
   return std::equal(a, a + 3, b);
 }
 
+template <typename Set>
+std::string SetForbidden(double, const Set& set)
+{
+  set(std::nan(""));
+  return "nan";
+}
+template <typename Set>
+std::string SetForbidden(const double*, const Set& set)
+{
+  set(std::array<double, 3>{ 0.5, std::nan(""), 0.5 }.data());
+  return "nan";
+}
+template <typename Set>
+std::string SetForbidden(int, const Set& set)
+{
+  set(-77);
+  return "-77";
+}
+template <typename Set>
+std::string SetForbidden(bool, const Set&)
+{
+  return "";
+}
+template <typename Set>
+std::string SetForbidden(const void*, const Set&)
+{
+  return "";
+}
+
 /// A property of the class F. The expression `value` draws a random value and may use `dice`.
 #define RANDOM_PROPERTY(F, name, value)                                                            \
   RandomProperty                                                                                   \
@@ -84,7 +116,12 @@ inline bool SameValue(const double* a, const double* b)
       [](vtkPolyDataAlgorithm * from, vtkPolyDataAlgorithm * to)                                   \
     { static_cast<F*>(to)->Set##name(static_cast<F*>(from)->Get##name()); },                       \
       [](vtkPolyDataAlgorithm * a, vtkPolyDataAlgorithm * b)                                       \
-    { return SameValue(static_cast<F*>(a)->Get##name(), static_cast<F*>(b)->Get##name()); }        \
+    { return SameValue(static_cast<F*>(a)->Get##name(), static_cast<F*>(b)->Get##name()); },       \
+      [](vtkPolyDataAlgorithm * filter)                                                            \
+    {                                                                                              \
+      return SetForbidden(static_cast<F*>(filter)->Get##name(),                                    \
+        [filter](auto other) { static_cast<F*>(filter)->Set##name(other); });                      \
+    }   \
   }
 
 /// A positive number, rarely a negative one, which most properties do not allow.

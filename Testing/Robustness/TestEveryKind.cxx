@@ -436,6 +436,11 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
     {
       const double energy = HistoryAt(filters[1], row, "Energy");
       EXPECT_NEAR(energy, ratio * HistoryAt(filters[0], row, "Energy"), allowed * energy);
+      if (History(filters[0])->GetColumnByName("ErrorBound"))
+      {
+        const double bound = value * HistoryAt(filters[0], row, "ErrorBound");
+        EXPECT_NEAR(HistoryAt(filters[1], row, "ErrorBound"), bound, (found ? 1e-5 : 0.0) * bound);
+      }
     }
   }
   if (std::string(this->GetParam().Name) == "MumfordShahGiven") // finds edges

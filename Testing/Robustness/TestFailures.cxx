@@ -132,6 +132,11 @@ TEST_P(Failures, AfterASuccessLeaveNoResultOfIt)
   {
     EXPECT_EQ(History(this->Filter)->GetNumberOfRows(), 0);
   }
+  if (this->Filter->GetNumberOfOutputPorts() > 2)
+  {
+    auto* const curves = vtkPolyData::SafeDownCast(this->Filter->GetOutputDataObject(2));
+    EXPECT_EQ(curves->GetNumberOfPoints() + curves->GetNumberOfCells(), 0);
+  }
 }
 
 TEST_P(Failures, OfABlockAreThoseOfAll)

@@ -257,11 +257,11 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   return needed;
 }
 
-/// Changes one property many times. Returns whether two results without errors have differed.
-bool ChangeAlone(const FilterClass& kind, const RandomProperty& property)
+/// A filter on a surface, with the settings that a property needs to have an effect.
+vtkSmartPointer<vtkPolyDataAlgorithm> MakeFor(
+  const FilterClass& kind, const RandomProperty& property, vtkPolyData* surface)
 {
   static const auto needed = NeededSettings();
-  const auto surface = PatchedEllipsoid();
   const auto filter = kind.Make();
   filter->SetInputData(surface);
   const bool isTexture = kind.Name == "vtkTuringTextureFilter"; // it starts from noise
@@ -282,6 +282,14 @@ bool ChangeAlone(const FilterClass& kind, const RandomProperty& property)
   {
     diffusion->SetNumberOfTimeSteps(3);
   }
+  return filter;
+}
+
+/// Changes one property many times. Returns whether two results without errors have differed.
+bool ChangeAlone(const FilterClass& kind, const RandomProperty& property)
+{
+  const auto surface = PatchedEllipsoid();
+  const auto filter = MakeFor(kind, property, surface);
   Messages messages(filter);
   auto last = vtkSmartPointer<vtkPolyDataAlgorithm>();
   bool hasEffect = false;
@@ -385,6 +393,47 @@ TEST_P(EveryProperty, ChangedAloneHasAnEffectAndGivesWhatANewFilterGives)
       WithoutEffectInClass.count(kind.Name + " " + property.Name);
     EXPECT_TRUE(hasEffect || excused) << "no effect: does it need other settings?";
   }
+}
+
+/// Neither NaN nor -77 is allowed, but as a seed. Ranges are tested in Core.
+TEST_P(EveryProperty, OfAForbiddenValueIsNamedInOneErrorAndTheInputPasses)
+{
+  const auto surface = PatchedEllipsoid();
+  for (const RandomProperty& property : this->GetParam().Properties)
+  {
+    const auto filter = MakeFor(this->GetParam(), property, surface);
+    const std::string value = property.SetForbidden(filter);
+    if (value.empty() || property.Name == "RandomSeed")
+    {
+      continue;
+    }
+    Messages messages(filter);
+    filter->Update();
+    ASSERT_EQ(messages.Errors.size(), 1u) << property.Name;
+    EXPECT_NE(
+      messages.Errors[0].find(property.Name + " is " + value + "; allowed: "), std::string::npos)
+      << property.Name << ": " << messages.Errors[0];
+    EXPECT_TRUE(IsUnchanged(filter, surface)) << property.Name;
+    if (filter->GetNumberOfOutputPorts() > 2) // curves
+    {
+      EXPECT_EQ(vtkPolyData::SafeDownCast(filter->GetOutputDataObject(2))->GetNumberOfPoints(), 0);
+    }
+  }
+}
+
+TEST_P(EveryProperty, OfNoSurfaceIsOneError)
+{
+  const auto filter = this->GetParam().Make();
+  Messages messages(filter);
+  vtkNew<vtkPolyData> nothing, points;
+  points->SetPoints(Sphere(1)->GetPoints());
+  filter->SetInputData(nothing);
+  filter->Update();
+  filter->SetInputData(points);
+  filter->Update();
+  ASSERT_EQ(messages.Errors.size(), 2u);
+  EXPECT_NE(messages.Errors[0].find("the input is empty"), std::string::npos);
+  EXPECT_NE(messages.Errors[1].find("the input has no polygons"), std::string::npos);
 }
 
 /// A point that no triangle uses is usual, and so is noise of data and of points. Textures of an
