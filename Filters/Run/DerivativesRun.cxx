@@ -5,6 +5,7 @@
 #include "Core/Geometry/CellFits.h"
 #include "Core/Geometry/HeatRegression.h"
 #include "Run/CellFields.h"
+#include "Run/Sentinels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -164,6 +165,7 @@ void DerivativesRun::Update(
     this->NothingKnown << fields.DataName
                        << " is NaN in every triangle that takes part, and so is the result";
   }
+  this->Sentinels = AskForSentinels(surface, fields, mesh.GetReduction());
   const Derivatives operators(mesh, positions, this->Parallel);
   this->Turned = operators.Normals().TurnedTriangles;
   progress.Report(0.35);
@@ -331,6 +333,10 @@ std::vector<Warning> DerivativesRun::FindOwnWarnings() const
   if (!this->NothingKnown.Words().empty())
   {
     warnings.push_back({ this->NothingKnown, this->SurfaceVersion });
+  }
+  for (const Sentence& text : this->Sentinels)
+  {
+    warnings.push_back({ text, this->FieldsVersion });
   }
   return warnings;
 }

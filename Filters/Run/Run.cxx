@@ -233,7 +233,10 @@ void Run::MakeModel(
       this->Settings->MaskMode == MaskMode::Inpaint, block.Units.ValueUnit, wanted.MaximumDistance);
   }
   progress.Report(0.2);
-  AskForSentinels(*block.Surface, fields, processes, block.Result);
+  for (const Sentence& warning : AskForSentinels(*block.Surface, fields, processes))
+  {
+    block.Result.WarnOnce(warning);
+  }
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
   const ModelTraits traits = this->Settings->DescribeModel();
   block.HoldsDetail = traits.NeedsCellDetail();

@@ -37,9 +37,10 @@ std::size_t SentinelOf(double value)
 
 } // namespace
 
-void AskForSentinels(
-  const Surface& surface, const Fields& fields, const Reduction& processes, RunResult& result)
+std::vector<Sentence> AskForSentinels(
+  const Surface& surface, const Fields& fields, const Reduction& processes)
 {
+  std::vector<Sentence> warnings;
   const PointSamples* const samples = fields.Samples.get();
   const Values& values = samples ? samples->Given : fields.Data.Values;
   const std::vector<double>& weights = samples ? samples->Weights : fields.FidelityFactors.Values;
@@ -85,7 +86,7 @@ void AskForSentinels(
     const double distance = Known[k] > 0.0 ? Known[k] - others.High : others.Low - Known[k];
     if (counts[k] > 0 && distance > 0.0 && distance > far * others.Width())
     {
-      result.WarnOnce(Sentence()
+      warnings.push_back(Sentence()
         << counts[k] << (counts[k] == 1 ? " value of " : " values of ")
         << (samples ? Sentence("the points") : Sentence(fields.DataName))
         << (counts[k] == 1 ? " is " : " are ") << Known[k]
@@ -95,6 +96,7 @@ void AskForSentinels(
         << ")");
     }
   }
+  return warnings;
 }
 
 } // namespace SurfaceDiffusion

@@ -7,10 +7,10 @@
 namespace SurfaceDiffusion
 {
 
-/// Warn of numbers that programs write where they have no value, such as -9999 or the fill
+/// A warning for each number that programs write where they have no value, such as -9999 or the fill
 /// value of netCDF, 9.969e36, that the known data have farther from all others than half of their range:
 /// are they values? Collective.
-void AskForSentinels(
-  const Surface& surface, const Fields& fields, const Reduction& processes, RunResult& result);
+std::vector<Sentence> AskForSentinels(
+  const Surface& surface, const Fields& fields, const Reduction& processes);
 
 } // namespace SurfaceDiffusion

@@ -399,6 +399,9 @@ TEST(InterpolationRun, AsksForNumbersThatStandForNoValue)
     f(5, 0) = sentinel;
     const Solution heat = Heat(s.Vertices, s.Faces, f, HeatSettings());
     EXPECT_TRUE(Warns(heat, "1 value of Data is ")) << sentinel;
+    EXPECT_TRUE(
+      Warns(Derivative(s.Vertices, s.Faces, f, DerivativesSettings()), "1 value of Data is "))
+      << sentinel;
   }
   Values depths = 6000.0 * FieldAt(s); // a value among others
   depths.array() -= 22000.0;
