@@ -31,8 +31,8 @@
  * Arrays 8 and 9, AlongSpeed and AcrossSpeed need Method Automatic or Eikonal. A source that the mask or a
  * barrier excludes, or that no triangle uses, does not count, with a warning; sources of port 1
  * near to excluded triangles do not move to others. Without any source that counts, the update is
- * an error. With MaximumDistance 0 a warning says if half of the points on port 1 are farther from
- * the surface than a quarter of the diagonal of its bounding box.
+ * an error. With MaximumDistance 0 a warning counts the points on port 1 that are farther from the
+ * surface than five mean edges, but at least 2 % and at most 10 % of the diagonal of its bounding box.
  *
  * **Method.**
  * - Automatic: Exact where it takes at most a second, without speeds and start times, and Eikonal

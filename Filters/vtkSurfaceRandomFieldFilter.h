@@ -26,8 +26,8 @@
  *
  * Random numbers are a hash of RandomSeed, the number of the field, and the point's global id or,
  * without global ids, its coordinates to some 1/4096 of a mean edge: the fields do not depend on the
- * numbering of the points, the number of threads, pieces, or moves of the points by round-off, but for
- * the tolerance of the solves, 1e-10. Surfaces and blocks with the same ids or coordinates have the same
+ * numbering of the points, the number of threads, pieces, or, at all but a few points, moves by
+ * round-off of double precision, but for the tolerance of the solves, 1e-10. Surfaces and blocks with the same ids or coordinates have the same
  * fields: they need different seeds.
  *
  * Input array 1 (points or cells) is a mask: triangles with a nonzero point or cell take no part,

@@ -107,7 +107,7 @@ Sentence DescribeSmoothValues(
   const double mean = data.Weights.dot(values) / data.Weights.sum();
   const double variance =
     data.Weights.dot((values.array() - mean).square().matrix()) / data.Weights.sum();
-  if (!VariesAlikeAtAllScales(places, values, variance))
+  if (values.minCoeff() == values.maxCoeff() || !VariesAlikeAtAllScales(places, values, variance))
   {
     return {};
   }

@@ -126,11 +126,21 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
         { place.Triangle, place.Coordinates, place.Coordinates, row, row, labels[i] });
     }
   }
+  std::vector<char> isMeasured(static_cast<std::size_t>(shapes.Places.rows()), 0);
   for (std::size_t s = 0; s < shapes.Segments.size(); ++s)
   {
     progress.Report(static_cast<double>(labels.size() + s) / all);
     const std::array<Index, 2>& ends = shapes.Segments[s];
     this->ProjectSegment(shapes, ends, labels[static_cast<std::size_t>(ends[0])], find, found);
+    for (const Index end : ends)
+    {
+      if (!isMeasured[static_cast<std::size_t>(end)]) // the point of several segments
+      {
+        isMeasured[static_cast<std::size_t>(end)] = 1;
+        found.Distances.push_back(find(shapes.Places.row(end)).Distance);
+        found.Places.push_back(shapes.Places.row(end));
+      }
+    }
   }
   return found;
 }
@@ -160,8 +170,6 @@ void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Ind
   };
   std::vector<Part> parts;
   Place last = find(0.0);
-  found.Distances.push_back(last.Distance);
-  found.Places.push_back(a);
   for (int k = 0; k < samples; ++k)
   {
     const double from = static_cast<double>(k) / samples;
@@ -195,8 +203,6 @@ void SourceProjection::ProjectSegment(const SourceShapes& shapes, std::array<Ind
     }
     last = next;
   }
-  found.Distances.push_back(last.Distance);
-  found.Places.push_back(b);
   isFar = isFar || last.IsFar;
   ++(found.Pieces.size() > before ? found.Count : (isFar ? found.TooFar : found.Outside));
 }

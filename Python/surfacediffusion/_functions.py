@@ -208,7 +208,9 @@ def _of_data(result_class: type[Result]) -> Callable[[F], F]:
         def run(*arguments: Any, **keywords: Any) -> Any:
             given = signature.bind(*arguments, **keywords)
             given.apply_defaults()
-            return _diffusion(function.__name__, data.name, result_class, *given.args, **given.kwargs)
+            named = dict(given.arguments)
+            return _diffusion(function.__name__, data.name, result_class, named.pop("surface"),
+                              named.pop(data.name), named.pop("properties", {}), **named)
 
         run.__signature__ = signature  # type: ignore[attr-defined]
         return run  # type: ignore[return-value]
@@ -217,9 +219,9 @@ def _of_data(result_class: type[Result]) -> Callable[[F], F]:
 
 
 def _diffusion(
-    name: str, data_name: str, result_class: type[Result], surface: Any, values: Any, *, mask: Any, roi: Any,
-    directions: Any, fixed: Any, dtype: Any, progress: Progress, on_faces: Any = None, fidelity: Any = None,
-    rates: Any = None, **properties: Any,
+    name: str, data_name: str, result_class: type[Result], surface: Any, values: Any,
+    properties: dict[str, Any], *, mask: Any, roi: Any, directions: Any, fixed: Any, dtype: Any,
+    progress: Progress, on_faces: Any = None, fidelity: Any = None, rates: Any = None,
 ) -> Any:
     form = _find_form(properties, name)
     surface = as_surface(surface)

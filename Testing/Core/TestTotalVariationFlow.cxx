@@ -231,11 +231,12 @@ TEST(TotalVariationFlow, StripesFallAtTheDiffusivityAcrossThem)
   TangentVectors frames(mesh.NumberOfTriangles(), 2);
   const Points x = Eigen::RowVector3d(1.0, 0.0, 0.0).replicate(s.NumberOfTriangles(), 1);
   frames = TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, x);
-  for (const double along : { 1.0, 3.0 })
+  for (const auto& [along, across] :
+    { std::array<double, 2>{ 1.0, 0.2 }, { 3.0, 0.2 }, { 1.0, 0.0 } })
   {
     auto settings = ExactSettings(mesh, 0.1, 0.0, 1e-6);
     settings.AlongDiffusivity = along;
-    settings.AcrossDiffusivity = 0.2;
+    settings.AcrossDiffusivity = across;
     TotalVariationFlow flow(assembler, frames, PointData::FromValues(u), settings);
     flow.Advance(ProgressMonitor());
     // The left part, 2 long, loses `along` per time and length of its edge.

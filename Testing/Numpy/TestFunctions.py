@@ -365,6 +365,10 @@ class Keywords(unittest.TestCase):
     def test_unknown_keyword_is_a_type_error_with_the_nearest(self):
         with self.assertRaisesRegex(TypeError, "'fhwm'; did you mean 'fwhm'"):
             sd.heat(sd.sphere(1), np.zeros(42), fhwm=1)
+        for function, keyword in ((sd.heat, "rates"), (sd.turing_texture, "fidelity"),
+                                  (sd.turing_texture, "values"), (sd.heat, "name")):
+            with self.subTest(keyword), self.assertRaisesRegex(TypeError, f"'{keyword}'"):
+                function(sd.sphere(1), np.zeros((42, 2)), **{keyword: np.zeros(42)})
 
     def test_numbers_of_numpy_are_numbers(self):
         surface = sd.sphere(2)

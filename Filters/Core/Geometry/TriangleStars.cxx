@@ -138,15 +138,18 @@ TriangleStars::TriangleStars(const Points& points, const Triangles& triangles)
     const bool hasArcs = s > 0 && centreOf[s].first == centreOf[s].second;
     Points arcs = hasArcs ? ArcsAround(centreOf[s].first, points, part) : Points(0, 3);
     const TriangleTree arcBoxes(arcs, hasArcs ? corners : Triangles(0, 3));
-    const Eigen::Vector3d centre =
-      hasArcs ? points.row(centreOf[s].first).transpose() : Eigen::Vector3d::Zero().eval();
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    if (hasArcs)
+    {
+      centre = points.row(centreOf[s].first).transpose();
+    }
     this->Stars.push_back(
       { std::move(members[s]), TriangleTree(points, part), centre, std::move(arcs), arcBoxes });
   }
   std::vector<Box> bounds;
   for (const Star& star : this->Stars)
   {
-    bounds.push_back(star.Boxes.Bounds());
+    bounds.push_back((star.Members.empty() ? this->Stars.back() : star).Boxes.Bounds());
   }
   this->Bounds = TriangleTree(bounds);
 }

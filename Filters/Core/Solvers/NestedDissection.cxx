@@ -267,13 +267,19 @@ bool IsAroundHubs(const SparseMatrix& matrix, const Reduction& overProcesses)
   constexpr double most = 0.5;
   constexpr Index many = 64; // of entries; poles of spheres have more, but few neighbours in all
   const Index* const outer = matrix.outerIndexPtr();
-  double ofHubs = 0.0;
+  Flags isAtHub = Flags::Constant(matrix.rows(), false);
   for (Index i = 0; i < static_cast<Index>(matrix.rows()); ++i)
   {
-    const Index entries = outer[i + 1] - outer[i];
-    ofHubs += entries > many ? entries : 0.0;
+    if (outer[i + 1] - outer[i] > many)
+    {
+      for (SparseMatrix::InnerIterator a(matrix, i); a; ++a)
+      {
+        isAtHub[a.index()] = true;
+      }
+    }
   }
-  return overProcesses.Sum(ofHubs) > most * overProcesses.Sum(static_cast<double>(matrix.rows()));
+  return overProcesses.Sum(static_cast<double>(isAtHub.count())) >
+    most * overProcesses.Sum(static_cast<double>(matrix.rows()));
 }
 
 } // namespace SurfaceDiffusion

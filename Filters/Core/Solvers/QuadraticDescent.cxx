@@ -6,6 +6,7 @@
 #include "Core/Solvers/ConjugateGradients.h"
 #include "Core/Solvers/NestedDissection.h"
 #include "Core/Solvers/NotPositiveDefinite.h"
+#include "Core/Solvers/SolverChoice.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +67,8 @@ void QuadraticDescent::SetMatrix(
     this->HasFactor = false;
     return;
   }
-  this->HasFactor = reduction.IsSerial() && IsAroundHubs(matrix) && this->Factorize(matrix);
+  this->HasFactor =
+    reduction.IsSerial() && n <= LargestFactor && IsAroundHubs(matrix) && this->Factorize(matrix);
   if (this->HasFactor)
   {
     return;

@@ -38,8 +38,8 @@ struct SolverTask
   /// which do not map constants to zero, and diffusivities that change in every step and by orders
   /// of magnitude from triangle to triangle.
   bool AllowMultigrid = true;
-  /// Several processes have a part of the surface each. They factorise a matrix only if all else
-  /// fails, and not with more than LargestReplicated vertices.
+  /// Several processes have a part of the surface each. They factorise a matrix only around hubs or
+  /// if all else fails, and not with more than LargestReplicated vertices.
   bool IsDistributed = false;
   /// The solver is the preconditioner of another iteration (LinearSolver::Precondition), which has
   /// tried the diagonal already and needs a method that knows the whole matrix.

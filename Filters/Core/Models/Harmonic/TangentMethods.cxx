@@ -73,7 +73,7 @@ const std::vector<TangentMethods::Preconditioner>& TangentMethods::Methods(
     case Preconditioner::Multigrid:
       return multigrid;
     default:
-      if (IsAroundHubs(tangent.Matrix, tangent.Reduction))
+      if (tangent.Reduction.IsSerial() && IsAroundHubs(tangent.Matrix))
       {
         return factor;
       }

@@ -21,7 +21,7 @@ public:
   /// smooth maps and large steps, while for noise Jacobi is fast.
   enum class Preconditioner
   {
-    /// As Factor around hubs, as Multigrid in one process if diffusion dominates, else Jacobi,
+    /// In one process as Factor around hubs and as Multigrid if diffusion dominates, else Jacobi,
     /// Factor
     Automatic,
     Factor, ///< Factor, Jacobi

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/TotalVariation/GradientSplitting.h"
 
+#include "Core/Operators/CotanWeights.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -33,13 +35,16 @@ double SquaredSteepest(const GradientMap& map)
     map.OfCorner(2).squaredNorm() });
 }
 
-/// That of the penalty.
-double SquaredTypical(const GradientMap& map)
+/// That of the penalty. plain: without S, lest strong directions count as needles. It stands for S where
+/// this is 0, in triangles without a direction.
+double SquaredTypical(const GradientMap& map, const GradientMap& plain)
 {
-  const double area = std::abs(map.First[0] * map.Second[1] - map.First[1] * map.Second[0]);
+  const double area = std::abs(plain.First[0] * plain.Second[1] - plain.First[1] * plain.Second[0]);
   const double mean = 2.0 / std::sqrt(3.0) * area; // that of equilateral triangles
+  const double ofTriangle = SquaredSteepest(plain);
+  const double share = ofTriangle > LargestRatio * mean ? mean / ofTriangle : 1.0;
   const double steepest = SquaredSteepest(map);
-  return steepest > LargestRatio * mean ? mean : steepest;
+  return (steepest > 0.0 ? steepest : ofTriangle) * share;
 }
 
 } // namespace
@@ -62,8 +67,11 @@ GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
   ForEach(parallel, this->Mesh->NumberOfTriangles(),
     [&](Index t)
     {
-      const double g = function(ranges[t] * ranges[t] * SquaredTypical((*this->Gradients)[t]));
-      this->Penalty[t] = PenaltyFactor * perUnknown * g * this->Mesh->Shapes()[t].Area();
+      const TriangleMesh::Shape& s = this->Mesh->Shapes()[t];
+      const GradientMap plain = { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
+      const double g =
+        function(ranges[t] * ranges[t] * SquaredTypical((*this->Gradients)[t], plain));
+      this->Penalty[t] = PenaltyFactor * perUnknown * g * s.Area();
     });
 }
 
