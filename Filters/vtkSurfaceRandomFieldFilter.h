@@ -25,10 +25,9 @@
  * sqrt(2) on a straight one) and where the surface is small beside the width.
  *
  * Random numbers are a hash of RandomSeed, the number of the field, and the point's global id or,
- * without global ids, its coordinates to some 1/4096 of a mean edge: the fields do not depend on the
- * numbering of the points, the number of threads, pieces, or, at all but a few points, moves by
- * round-off of double precision, but for the tolerance of the solves, 1e-10. Surfaces and blocks with the same ids or coordinates have the same
- * fields: they need different seeds.
+ * without global ids, its coordinates: the fields do not depend on the numbering of the points, the
+ * number of threads, or pieces, but for the tolerance of the solves, 1e-10. Surfaces and blocks with
+ * the same ids or coordinates have the same fields: they need different seeds.
  *
  * Input array 1 (points or cells) is a mask: triangles with a nonzero point or cell take no part,
  * and the surface ends there. Points that no triangle uses get NaN. A warning reports widths below

@@ -211,14 +211,11 @@ void Run::MakeModel(
   {
     data.Measured = FindMeasured(*block.Surface, fields);
   }
-  // Of this block alone, so that its noise does not depend on others.
-  const double edges = block.Edges->Number;
-  const double h =
-    edges > 0.0 ? block.Edges->Sum * block.Surface->Mesh().LengthUnit() / edges : 0.0;
   ModelInputs inputs{ *block.Surface, block.Units, std::move(data), std::move(directions),
     fields.Rates,
-    this->Settings->DescribeModel().UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields, h)
-                                                      : std::vector<std::int64_t>(),
+    this->Settings->DescribeModel().UsesRandomNumbers
+      ? MakeVertexIds(*block.Surface, fields, block.Units.MeanEdgeLength)
+      : std::vector<std::int64_t>(),
     this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes,
     std::max(fields.AllColumns, fields.Data.Values.cols()),
     fields.FirstColumn + fields.Data.Values.cols() >= fields.AllColumns, fields.DataAreTerms,

@@ -51,9 +51,6 @@ void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::o
   settings.Nu = nu;
   settings.HasUnitVariance = unitVariance;
   this->Field.reset();
-  const TriangleMesh& drawn = this->Built->InputMesh();
-  const double edges = drawn.NumberOfEdges();
-  const double h = edges > 0.0 ? drawn.TotalEdgeLength() * drawn.LengthUnit() / edges : 1.0;
   const std::pair<double, int> covariance{ width, nu };
   const auto known = this->Deviations.find(covariance);
   PythonProgress(progress).Run(
@@ -61,7 +58,7 @@ void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::o
     {
       this->Field = std::make_unique<RandomField>(this->Built->SharedAssembler(),
         CotanWeights(mesh, PythonThreads::Instance()), settings,
-        MakeVertexIds(*this->Built, Fields(), h),
+        MakeVertexIds(*this->Built, Fields(), 0.0),
         unitVariance && known != this->Deviations.end() ? known->second : Vector(),
         PythonThreads::Instance(), monitor);
     });
