@@ -40,10 +40,12 @@
  * 15 steps towards the last normals follow.
  *
  * Connected components have noise levels, types and units of length of their own, so that several
- * surfaces in one data set are denoised as each alone. Noise that cannot be distinguished
- * from the shape stays unless NoiseLevel is given: that of components with less than 200 points, and
- * of those with more than a quarter of the edges within flat faces, which no noise leaves, or with less
- * than 30 % of the vertices on smooth faces, as on fans. Triangles may be oriented at random: those across edges of two triangles are oriented alike inside. The result does not depend on the numbering of points and cells.
+ * surfaces in one data set are denoised as each alone. Noise that cannot be distinguished from the
+ * shape stays unless NoiseLevel is given: that of components with less than 200 points, and of
+ * those with more than a quarter of the edges within flat faces, which no noise leaves, or with
+ * less than 30 % of the vertices on smooth faces, as on fans. Triangles may be oriented at random:
+ * those across edges of two triangles are oriented alike inside. The result does not depend on the
+ * numbering of points and cells.
  *
  * A surface whose estimated noise is 0 stays as it is, with a warning. Points that move by more
  * than 10 times the noise level are a warning, too, and so is a change of the volume of a closed

@@ -279,12 +279,7 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
   set.Given = found.Count + found.TooFar + found.Outside;
   if (maximumDistance == 0.0)
   {
-    Points places(static_cast<Eigen::Index>(found.Places.size()), 3);
-    for (std::size_t i = 0; i < found.Places.size(); ++i)
-    {
-      places.row(static_cast<Eigen::Index>(i)) = found.Places[i];
-    }
-    set.Farness = DescribeFarPoints("of the sources", places, found.Distances, surface);
+    set.Farness = DescribeFarPoints("of the sources", found.Places, found.Distances, surface);
   }
   for (const SourcePiece& piece : found.Pieces)
   {

@@ -13,11 +13,6 @@
 namespace SurfaceDiffusion
 {
 
-namespace
-{
-
-} // namespace
-
 std::vector<Index> SourceShapes::FindLabels() const
 {
   const auto count = static_cast<Index>(this->Places.rows());
@@ -88,6 +83,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     return place;
   };
   ProjectedSources found;
+  found.Places.resize(shapes.Places.rows(), 3);
   const std::vector<Index> labels = shapes.FindLabels();
   std::vector<char> isOnLine(labels.size(), 0);
   for (const auto& segment : shapes.Segments)
@@ -111,14 +107,18 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     {
       progress.Report(static_cast<double>(i) / all);
     }
-    if (isOnLine[i] != 0 || IsSet(shapes.Hidden, i))
+    if (IsSet(shapes.Hidden, i))
     {
       continue;
     }
     const auto row = static_cast<Index>(i);
     const Place place = find(shapes.Places.row(row));
+    found.Places.row(static_cast<Eigen::Index>(found.Distances.size())) = shapes.Places.row(row);
     found.Distances.push_back(place.Distance);
-    found.Places.push_back(shapes.Places.row(row));
+    if (isOnLine[i] != 0)
+    {
+      continue; // its segments count
+    }
     ++(place.Triangle >= 0 ? found.Count : (place.IsFar ? found.TooFar : found.Outside));
     if (place.Triangle >= 0)
     {
@@ -126,22 +126,13 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
         { place.Triangle, place.Coordinates, place.Coordinates, row, row, labels[i] });
     }
   }
-  std::vector<char> isMeasured(static_cast<std::size_t>(shapes.Places.rows()), 0);
   for (std::size_t s = 0; s < shapes.Segments.size(); ++s)
   {
     progress.Report(static_cast<double>(labels.size() + s) / all);
     const std::array<Index, 2>& ends = shapes.Segments[s];
     this->ProjectSegment(shapes, ends, labels[static_cast<std::size_t>(ends[0])], find, found);
-    for (const Index end : ends)
-    {
-      if (!isMeasured[static_cast<std::size_t>(end)]) // the point of several segments
-      {
-        isMeasured[static_cast<std::size_t>(end)] = 1;
-        found.Distances.push_back(find(shapes.Places.row(end)).Distance);
-        found.Places.push_back(shapes.Places.row(end));
-      }
-    }
   }
+  found.Places.conservativeResize(static_cast<Eigen::Index>(found.Distances.size()), 3);
   return found;
 }
 

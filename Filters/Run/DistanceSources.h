@@ -36,8 +36,8 @@ struct ProjectedSources
   Index Count = 0; ///< points, and segments, with a piece
   Index TooFar = 0; ///< without one: farther than the largest distance
   Index Outside = 0; ///< without one: nearest to triangles that take no part
-  std::vector<double> Distances; ///< of points, and ends of segments, from the surface
-  std::vector<Eigen::RowVector3d> Places; ///< of the same
+  std::vector<double> Distances; ///< of the points that are not hidden, from the surface
+  Points Places; ///< of the same
 };
 
 /// Finds the places of a surface that are nearest to points and lines. Those nearest to triangles

@@ -148,8 +148,10 @@ TangentVectors MakeDirections(
 std::vector<Index> MakeSeeds(const Surface& surface, const Fields& fields);
 
 /// A number per vertex that identifies it in random numbers. Without ids of points it is made from
-/// the coordinates, rounded to NoiseGrid(h), so that moves by round-off keep it. h: the mean edge.
-/// Collective.
-std::vector<std::int64_t> MakeVertexIds(const Surface& surface, const Fields& fields, double h);
+/// the coordinates, rounded to NoiseGrid(h), so that moves by round-off keep it. h: the mean edge of
+/// all surfaces together, so that blocks have the noise of parts of one surface; 0: the coordinates
+/// are not rounded, as for runs that know their own surface only. Collective.
+std::vector<std::int64_t> MakeVertexIds(
+  const Surface& surface, const Fields& fields, double h = 0.0);
 
 } // namespace SurfaceDiffusion

@@ -163,8 +163,8 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
       "The standard deviation of the noise of values with weight 1, in the unit of "
       "the data, 0 or more. AutomaticSmoothing and the standard errors use it. 0: "
       "estimated from what the smoothed result leaves of the values, and from "
-      "repeated values at one place; of correlated noise a warning tells, from 200 values "
-      "on." },
+      "repeated values at one place. Correlated noise is reported by a warning if there are 200 "
+      "values or more." },
     this->NoiseLevel, SettingRange::NonNegative());
   visitor.Number({ "Smoothing", "h^2",
                    "mu, with AutomaticSmoothing off: the weight of the energy against the values, "

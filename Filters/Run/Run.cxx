@@ -205,17 +205,17 @@ void Run::MakeModel(
     processes, [&] { directions = MakeDirections(*block.Surface, fields, this->Parallel); });
   block.Result = RunResult();
   block.FinishedStep = -1;
-  block.Solvers.Configure(this->Settings->DescribeModel(), this->Parallel);
+  const ModelTraits traits = this->Settings->DescribeModel();
+  block.Solvers.Configure(traits, this->Parallel);
   PointData data = this->MakeData(block, fields, processes);
-  if (this->Settings->DescribeModel().EstimatesNoise && block.HasData)
+  if (traits.EstimatesNoise && block.HasData)
   {
     data.Measured = FindMeasured(*block.Surface, fields);
   }
   ModelInputs inputs{ *block.Surface, block.Units, std::move(data), std::move(directions),
     fields.Rates,
-    this->Settings->DescribeModel().UsesRandomNumbers
-      ? MakeVertexIds(*block.Surface, fields, block.Units.MeanEdgeLength)
-      : std::vector<std::int64_t>(),
+    traits.UsesRandomNumbers ? MakeVertexIds(*block.Surface, fields, block.Units.MeanEdgeLength)
+                             : std::vector<std::int64_t>(),
     this->Parallel, progress.Part(0.2, 1.0), block.Solvers, processes,
     std::max(fields.AllColumns, fields.Data.Values.cols()),
     fields.FirstColumn + fields.Data.Values.cols() >= fields.AllColumns, fields.DataAreTerms,
@@ -226,11 +226,10 @@ void Run::MakeModel(
       *std::max_element(fields.Seeds.Values.begin(), fields.Seeds.Values.end());
   }
   inputs.GivenCells = fields.GivenCells;
-  const ModelTraits wanted = this->Settings->DescribeModel();
-  if (wanted.UsesKnownValues)
+  if (traits.UsesKnownValues)
   {
     inputs.Known = FindKnownValues(*block.Surface, fields,
-      this->Settings->MaskMode == MaskMode::Inpaint, block.Units.ValueUnit, wanted.MaximumDistance);
+      this->Settings->MaskMode == MaskMode::Inpaint, block.Units.ValueUnit, traits.MaximumDistance);
   }
   progress.Report(0.2);
   for (const Sentence& warning : AskForSentinels(*block.Surface, fields, processes))
@@ -238,7 +237,6 @@ void Run::MakeModel(
     block.Result.WarnOnce(warning);
   }
   std::unique_ptr<Model> model = this->Settings->Make(inputs, block.Result);
-  const ModelTraits traits = this->Settings->DescribeModel();
   block.HoldsDetail = traits.NeedsCellDetail();
   if (block.Cells)
   {

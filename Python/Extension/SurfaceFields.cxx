@@ -58,7 +58,7 @@ void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::o
     {
       this->Field = std::make_unique<RandomField>(this->Built->SharedAssembler(),
         CotanWeights(mesh, PythonThreads::Instance()), settings,
-        MakeVertexIds(*this->Built, Fields(), 0.0),
+        MakeVertexIds(*this->Built, Fields()),
         unitVariance && known != this->Deviations.end() ? known->second : Vector(),
         PythonThreads::Instance(), monitor);
     });

@@ -76,9 +76,8 @@ def random_field(
         The smoothness of Matern's correlation: fields have nu - 1 derivatives.
     seed : int of 64 bits, default 0
         Of the random numbers, which are functions of the seed, the number of the field, and the
-        coordinates of the point: the same fields for any numbering of the points.
-        Surfaces with the same coordinates, such as both
-        hemispheres' spheres, need different seeds for different fields.
+        coordinates of the point: the same fields for any numbering of the points. Surfaces with the same
+        coordinates, such as both hemispheres' spheres, need different seeds for different fields.
     first : int, 0 or more, default 0
         The number of the first field: fields 10 to 19 are ``random_field(surface, 10, first=10)``, or
         columns of more, bit by bit.

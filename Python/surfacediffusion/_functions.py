@@ -352,7 +352,6 @@ def heat(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> NDArray[
     """
 
 
-
 @_with_settings
 @_of_data(DiffusionResult)
 def intrinsic_tv(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> NDArray[Any]:
@@ -391,7 +390,6 @@ def intrinsic_tv(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> 
     >>> bool(result.effective_fidelity_weight > 0)
     True
     """
-
 
 
 @_with_settings
@@ -449,7 +447,6 @@ def tensor_diffusion(surface: SurfaceLike, values: ArrayLike, **properties: Any)
     """
 
 
-
 @_with_settings
 @_of_data(EdgeResult)
 def mumford_shah(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> EdgeResult:
@@ -495,7 +492,6 @@ def mumford_shah(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> 
     >>> bool(np.abs(result.values - clean).mean() < 0.2 * np.abs(noisy - clean).mean())
     True
     """
-
 
 
 @_with_settings

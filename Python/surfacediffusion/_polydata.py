@@ -287,13 +287,13 @@ def compute_point_normals(data: Any) -> Any:
 
 def update_normals(before: Any, after: Any) -> None:
     """Compute the normals of a surface whose points have moved again, and drop its tangents."""
-    for given, made, find in ((before.GetPointData(), after.GetPointData(), _normals_of_points),
-                              (before.GetCellData(), after.GetCellData(), _normals_of_cells)):
+    for given, made, count, find in (
+            (before.GetPointData(), after.GetPointData(), after.GetNumberOfPoints(), _normals_of_points),
+            (before.GetCellData(), after.GetCellData(), after.GetNumberOfCells(), _normals_of_cells)):
         for array, kind, is_active in _drop(given, made):
-            normals_before, normals_after = find(before), find(after)
             if (kind == "normals" and isinstance(array, vtkDataArray) and array.GetNumberOfComponents() == 3
-                    and array.GetNumberOfTuples() == len(normals_after)):
-                index = made.AddArray(_moved(array, normals_before, normals_after))
+                    and array.GetNumberOfTuples() == count):
+                index = made.AddArray(_moved(array, find(before), find(after)))
                 if is_active:
                     made.SetActiveAttribute(index, made.NORMALS)
 

@@ -71,7 +71,7 @@ def from_stl(corners):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "part.stl")
         export(file, corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
-        return welded(read_surface(file))
+        return welded(read_surface(file).solver)
 
 
 def edges_of(surface):

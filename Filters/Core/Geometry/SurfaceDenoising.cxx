@@ -32,7 +32,8 @@ constexpr double FarDisplacement = 10.0;
 constexpr double FlatDistance = 0.01;
 constexpr double LargestFlatShare = 0.25;
 
-/// correlated: what was found of it. NaN where nothing can be told.
+/// The standard deviation of the noise along the normals: that of `correlated` noise if some was found,
+/// otherwise that of white noise. NaN if too few vertices are on smooth faces for an estimate.
 double EstimateNoise(const TriangleMesh& mesh, const Points& points,
   const CorrelatedNoise& correlated, const ParallelFor& parallel)
 {

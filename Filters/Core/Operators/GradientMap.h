@@ -24,6 +24,12 @@ struct GradientMap
   }
 };
 
+/// That of S = 1.
+inline GradientMap PlainGradientMap(const TriangleMesh::Shape& s)
+{
+  return { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
+}
+
 /// The map of each triangle of a mesh, computed when it is asked for.
 class GradientMaps
 {
@@ -40,8 +46,7 @@ public:
 
   GradientMap operator[](Index t) const
   {
-    const TriangleMesh::Shape s = this->Mesh->Shapes()[t];
-    const GradientMap plain = { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
+    const GradientMap plain = PlainGradientMap(this->Mesh->Shapes()[t]);
     return this->Frames.rows() == 0 ? plain : this->Stretch(t, plain);
   }
 

@@ -110,8 +110,9 @@ void SmoothInterpolation::FitSmoothly(
     bool isResolved = start.Resolves(mu);
     InfluenceSpectrum::Determinant last = start.Known();
     RepeatedValues column = rows;
-    column.Given = rows.Given.col(c);
-    column.Scatter = rows.Scatter.col(c);
+    // Moved in: an assignment that wants memory leaves Eigen's matrix with what it has freed.
+    column.Given = Values(rows.Given.col(c));
+    column.Scatter = Values(rows.Scatter.col(c));
     for (int again = 0; again < most && !isResolved; ++again)
     {
       const bool isNear = mu < apart * last.Mu && last.Mu < apart * mu;

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/TotalVariation/GradientSplitting.h"
 
-#include "Core/Operators/CotanWeights.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -67,10 +65,9 @@ GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
   ForEach(parallel, this->Mesh->NumberOfTriangles(),
     [&](Index t)
     {
-      const TriangleMesh::Shape& s = this->Mesh->Shapes()[t];
-      const GradientMap plain = { Gradient(s, 0.0, 1.0, 0.0), Gradient(s, 0.0, 0.0, 1.0) };
-      const double g =
-        function(ranges[t] * ranges[t] * SquaredTypical((*this->Gradients)[t], plain));
+      const TriangleMesh::Shape s = this->Mesh->Shapes()[t];
+      const double square = SquaredTypical((*this->Gradients)[t], PlainGradientMap(s));
+      const double g = function(ranges[t] * ranges[t] * square);
       this->Penalty[t] = PenaltyFactor * perUnknown * g * s.Area();
     });
 }
