@@ -20,6 +20,7 @@ try:
 except ImportError as problem:
     print(f"skipped: {problem}")
     sys.exit(77)
+pyvista.OFF_SCREEN = True  # on a display, show() waits until its window is closed
 
 
 class TestCode(unittest.TestCase):
