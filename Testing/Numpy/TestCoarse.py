@@ -5,12 +5,16 @@
 import importlib.util
 import inspect
 import pathlib
+import sys
 import unittest
 import warnings
 
 import numpy as np
 
 import surfacediffusion as sd
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "Surfaces"))
+from coarse import read_surfaces
 
 try:
     import pyvista
@@ -28,18 +32,6 @@ if not importlib.util.find_spec("scipy"):
 RANDOM = {"random_field", "surrogates", "segment", "turing_texture", "turing_texture_steps"}
 #: Of functions that iterate until a tolerance, relative to the largest value.
 TOLERANCES = dict.fromkeys(("intrinsic_tv", "intrinsic_tv_steps", "mumford_shah", "mumford_shah_steps"), 1e-3)
-
-
-def read_surfaces():
-    """Name, points and triangles of each surface."""
-    path = pathlib.Path(__file__).resolve().parents[1] / "Surfaces/coarse.txt"
-    lines = iter(line for line in path.read_text().splitlines() if not line.startswith("#"))
-    for line in lines:
-        name, points, triangles = line.split()
-        yield (name, np.array([next(lines).split() for _ in range(int(points))], float),
-               np.array([next(lines).split() for _ in range(int(triangles))], int))
-
-
 SURFACES = list(read_surfaces())
 
 
