@@ -21,7 +21,7 @@ for program in ("chromium", "chromedriver"):
         print(f"skipped: {program} is not installed (.ci/install-packages brings it)")
         sys.exit(77)
 
-PATIENCE = 60  # seconds; two cores may be busy with other tests
+PATIENCE = 180  # seconds; two cores may be busy with other tests
 
 
 def open_browser(downloads=None):
