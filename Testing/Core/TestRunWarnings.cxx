@@ -3,13 +3,19 @@
 #include "RunInput.h"
 
 #include "Run/DirectionFieldRun.h"
+#include "Run/DistanceRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/MumfordShahSettings.h"
 #include "Run/RandomFieldRun.h"
+#include "Run/ReliefRun.h"
+#include "Run/TensorDiffusionSettings.h"
 #include "Run/TextureSettings.h"
+#include "Run/TotalVariationSettings.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -220,6 +226,41 @@ TEST(RunWarnings, LengthsInEdgesOfComponentsThatAreUnlikeAreReported)
   unlike.Update(pair(0.01).Block(), field, ProgressMonitor());
   WarningLog log;
   ExpectOne(log.Report(unlike.FindWarnings()), { "lengths are in h" });
+}
+
+TEST(RunWarnings, OfAStepThatIsShownHoldsForThatStepAndIsReportedOnce)
+{
+  RunInput input = NoisyNormals();
+  input.Vertices.col(0) *= 3.0;
+  input.Vertices.col(2) *= 0.5;
+  HarmonicMapSettings settings;
+  settings.MoveVertices = true;
+  settings.TimeStep = 1.0;
+  settings.NumberOfTimeSteps = 6;
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  WarningLog log;
+  ExpectOne(log.Report(run.FindWarnings(Alone)), { "MoveVertices changes the volume by" });
+  run.Seek(5, ProgressMonitor()); // with another figure
+  EXPECT_EQ(run.FindWarnings(Alone).size(), 1u);
+  EXPECT_TRUE(log.Report(run.FindWarnings(Alone)).empty());
+
+  RunInput coarse(Testing::Subdivided(Testing::Tetrahedron(), 2));
+  coarse.Data.Data = {};
+  TextureSettings texture;
+  texture.FeatureSize = 40.0; // of a surface of about 3
+  texture.NumberOfTimeSteps = 40;
+  StateOf(run, { coarse.Block() }, texture);
+  const auto isSaid = [&]
+  {
+    const std::vector<Warning> warnings = run.FindWarnings(Alone);
+    return std::any_of(warnings.begin(), warnings.end(),
+      [](const Warning& warning)
+      { return warning.Sentence.Text().find("no pattern has grown") != std::string::npos; });
+  };
+  EXPECT_TRUE(isSaid());
+  run.Seek(20, ProgressMonitor()); // it may grow yet
+  EXPECT_FALSE(isSaid());
 }
 
 } // namespace SurfaceDiffusion
