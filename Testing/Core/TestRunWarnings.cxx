@@ -263,4 +263,43 @@ TEST(RunWarnings, OfAStepThatIsShownHoldsForThatStepAndIsReportedOnce)
   EXPECT_FALSE(isSaid());
 }
 
+TEST(RunWarnings, ColumnsOfUnlikeNoiseUnderOneNormAreReported)
+{
+  RunInput input = NoisyNormals();
+  const auto isSaid = [&](const auto& settings, const std::string& apart)
+  {
+    for (const Sentence& warning : WarningsOf(input, settings))
+    {
+      if (warning.Text().find("the noise of the columns of InputArray goes from") !=
+        std::string::npos)
+      {
+        EXPECT_NE(warning.Text().find(apart), std::string::npos) << warning;
+        return true;
+      }
+    }
+    return false;
+  };
+  TotalVariationSettings joint, each;
+  joint.NumberOfTimeSteps = each.NumberOfTimeSteps = 1;
+  each.ChannelCoupling = ChannelCoupling::PerChannel;
+  MumfordShahSettings edges;
+  edges.NumberOfTimeSteps = 1;
+  TensorDiffusionSettings tensor;
+  tensor.NumberOfTimeSteps = 1;
+  for (const double scale : { 1.0, 3.0, 1e3, 1e-3 })
+  {
+    input.Data.Data.Values.col(1) *= scale;
+    const bool isUnlike = scale == 1e3 || scale == 1e-3;
+    EXPECT_EQ(isSaid(joint, "set ChannelCoupling to PerChannel"), isUnlike) << scale;
+    EXPECT_FALSE(isSaid(each, "")) << scale;
+    EXPECT_EQ(isSaid(edges, "process each alone"), isUnlike) << scale;
+    EXPECT_EQ(isSaid(tensor, "process each alone"), isUnlike) << scale;
+    input.Data.Data.Values.col(1) /= scale;
+  }
+  input.Data.Data.Values.col(2).setZero(); // vectors in a plane
+  EXPECT_FALSE(isSaid(joint, ""));
+  input.Data.Data.Values.col(2) = 1e-15 * input.Data.Data.Values.col(0);
+  EXPECT_FALSE(isSaid(joint, ""));
+}
+
 } // namespace SurfaceDiffusion
