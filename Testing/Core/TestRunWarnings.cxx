@@ -228,6 +228,99 @@ TEST(RunWarnings, LengthsInEdgesOfComponentsThatAreUnlikeAreReported)
   ExpectOne(log.Report(unlike.FindWarnings()), { "lengths are in h" });
 }
 
+// Fill values such as that of netCDF are positive, and no test of a range finds them.
+TEST(RunWarnings, ANumberThatStandsForNoValueIsAskedForInEachArray)
+{
+  const double fill = 9.969209968386869e36;
+  RunInput input(Testing::Icosphere(3));
+  const auto points = static_cast<std::size_t>(input.Vertices.rows());
+  const auto triangles = static_cast<std::size_t>(input.Faces.rows());
+  input.Data.NumberOfCells = static_cast<Index>(triangles);
+  for (Index t = 0; t < input.Data.NumberOfCells; ++t)
+  {
+    input.Data.Cells.push_back(t);
+  }
+  const Fields good = input.Data;
+
+  HeatSettings heat;
+  heat.FidelityWeight = 1.0;
+  input.Data.FidelityFactors.Values.assign(points, 1.0);
+  EXPECT_TRUE(WarningsOf(input, heat).empty());
+  input.Data.FidelityFactors.Values[7] = fill;
+  ExpectOne(WarningsOf(input, heat),
+    { "1 value of FidelityArray is 9.96921e+36", "far from all others", "set 0 in its place" });
+  input.Data = good;
+  input.Data.Directions = { Points::Ones(input.Vertices.rows(), 3), false };
+  heat.AlongDiffusivity = 2.0;
+  heat.FidelityWeight = 0.0;
+  EXPECT_TRUE(WarningsOf(input, heat).empty());
+  input.Data.Directions.Values.row(3).setConstant(-9999.0);
+  ExpectOne(WarningsOf(input, heat), { "1 value of DirectionArray is -9999", "set NaN" });
+
+  TextureSettings texture;
+  texture.NumberOfTimeSteps = 1;
+  input.Data = good;
+  input.Data.Data = {};
+  input.Data.Rates = Values::Constant(input.Faces.rows(), 4, 20.0);
+  for (const bool isFill : { false, true })
+  {
+    input.Data.Rates.row(4).setConstant(isFill ? 1e20 : 20.0);
+    const std::vector<Sentence> warnings = WarningsOf(input, texture);
+    EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                [](const Sentence& warning) {
+                  return warning.Text().find("1 value of DiffusionRateArray is 1e+20") !=
+                    std::string::npos;
+                }),
+      isFill ? 1 : 0);
+  }
+
+  const auto warningsOfDistance = [&]
+  {
+    DistanceSettings settings;
+    DistanceRun run(SerialFor());
+    run.Update(input.Block(), settings, ProgressMonitor());
+    WarningLog log;
+    return log.Report(run.FindWarnings());
+  };
+  for (const bool onCells : { false, true })
+  {
+    input.Data = good;
+    input.Data.Data.Values.setZero();
+    input.Data.Data.Values(0, 0) = 1.0;
+    input.Data.Speeds = { std::vector<double>(onCells ? triangles : points, 1.0), onCells };
+    EXPECT_TRUE(warningsOfDistance().empty());
+    input.Data.Speeds.Values[5] = input.Data.Speeds.Values[9] = fill;
+    ExpectOne(warningsOfDistance(),
+      { "2 values of SpeedArray are 9.96921e+36",
+        "set 0 in its place, which is a barrier, or mask" });
+  }
+  input.Data.Speeds = {};
+  input.Data.StartTimes.assign(points, -9999.0); // of points that are no sources
+  input.Data.StartTimes[0] = 3.0;
+  EXPECT_TRUE(warningsOfDistance().empty());
+  input.Data.Data.Values(1, 0) = 2.0;
+  ExpectOne(warningsOfDistance(), { "1 value of SourceTimes is -9999", "let it be no source" });
+  input.Data.StartTimes.clear();
+  input.Data.Data.Values(9, 0) = -9999.0; // a source
+  ExpectOne(warningsOfDistance(), { "1 value of InputArray is -9999", "set NaN in its place" });
+  auto shapes = std::make_shared<SourceShapes>();
+  shapes->OfPoints = { 0, 5 };
+  shapes->Places = Points::Zero(2, 3);
+  shapes->StartTimes = { 0.0, -9999.0 };
+  input.Data.Data = {};
+  input.Data.Sources = shapes;
+  ExpectOne(warningsOfDistance(), { "1 value of SourceTimes is -9999" });
+
+  input.Data = good;
+  input.Data.Data.Values(6, 0) = -9999.0;
+  ReliefSettings relief;
+  relief.Height = 1e-5;
+  ReliefRun run(SerialFor());
+  run.Update(input.Block(), relief, ProgressMonitor());
+  WarningLog log;
+  ExpectOne(log.Report(run.FindWarnings()), { "1 value of InputArray is -9999", "set a number" });
+}
+
 TEST(RunWarnings, OfAStepThatIsShownHoldsForThatStepAndIsReportedOnce)
 {
   RunInput input = NoisyNormals();
