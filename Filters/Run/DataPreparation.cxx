@@ -6,6 +6,7 @@
 #include "Core/Statistics/MeasuredVertices.h"
 #include "Core/Statistics/NoiseLevel.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -87,6 +88,41 @@ void CompletePreparation(const DataSettings& settings, ModelInputs& inputs, RunR
   if (settings.HoldKnownValues)
   {
     inputs.Data.Fixed = inputs.Data.Fixed || !inputs.Data.Missing;
+  }
+}
+
+void WarnOfUnlikeColumns(const ModelInputs& inputs, const Sentence& apart, RunResult& result)
+{
+  const PointData& data = inputs.Data;
+  if (data.Given.cols() < 2 || !inputs.Surface.Mesh().GetReduction().IsSerial())
+  {
+    return;
+  }
+  PointData column = data;
+  std::vector<double> noise;
+  for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
+  {
+    column.Given = data.Given.col(k);
+    column.Start = data.Start.col(k);
+    noise.push_back(
+      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), column).Level() /
+      NoiseGain(inputs) * inputs.Units.ValueUnit);
+  }
+  constexpr double factor = 5.0;
+  constexpr double roundOff = 1e-6; // of a component of vectors in a plane
+  const double largest = *std::max_element(noise.begin(), noise.end());
+  double smallest = largest;
+  for (const double of : noise)
+  {
+    smallest = of > roundOff * largest ? std::min(smallest, of) : smallest;
+  }
+  if (largest > factor * smallest)
+  {
+    result.WarnOnce(Sentence("the noise of the columns of ")
+      << Word::Array("InputArray") << " goes from " << smallest << " to " << largest
+      << ", and the larger ones decide where there are edges in all (if their units differ, divide "
+         "each by its noise, or "
+      << apart << ")");
   }
 }
 

@@ -33,6 +33,10 @@ double NoiseGain(const ModelInputs& inputs);
 /// The standard deviation at vertices, in ValueUnit, of white noise of the data, in array units.
 double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel);
 
+/// A warning if the noise of columns that a model couples by one norm differs by more than a factor
+/// of 5, since edges of the larger ones drown those of the others. apart: the way to have them apart.
+void WarnOfUnlikeColumns(const ModelInputs& inputs, const Sentence& apart, RunResult& result);
+
 /// The mean fidelity factor of the known vertices, by area; 1 without factors. An automatic weight
 /// is divided by it, so that factors such as 1/s^2 may have any unit.
 double MeanFidelityFactor(const TriangleMesh& mesh, const PointData& data);

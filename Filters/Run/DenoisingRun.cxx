@@ -106,7 +106,7 @@ void DenoisingRun::Update(const BlockInput& input, Settings& given, const Progre
   {
     points.row(i) = surface.Points().row(mesh.InputVertex()[i]) / unit;
   }
-  Fields fields = input.ReadFields();
+  Fields fields = this->ReadFields(input);
   MoveMarksToData(surface, fields, Reduction::Serial(), this->Parallel);
   std::vector<char> fixed(fields.Fixed.Values.empty() ? 0 : static_cast<std::size_t>(count), 0);
   const auto numberOfPoints = static_cast<Index>(surface.Points().rows());

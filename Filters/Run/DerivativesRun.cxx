@@ -5,7 +5,6 @@
 #include "Core/Geometry/CellFits.h"
 #include "Core/Geometry/HeatRegression.h"
 #include "Run/CellFields.h"
-#include "Run/Sentinels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -159,13 +158,12 @@ void DerivativesRun::Update(
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
   const Points positions = VertexPositions(surface);
-  const Fields fields = input.ReadFields();
+  const Fields fields = this->ReadFields(input);
   if (!this->MissingRows.empty() && surface.NumberOfTriangles() == 0)
   {
     this->NothingKnown << fields.DataName
                        << " is NaN in every triangle that takes part, and so is the result";
   }
-  this->Sentinels = AskForSentinels(surface, fields, mesh.GetReduction());
   const Derivatives operators(mesh, positions, this->Parallel);
   this->Turned = operators.Normals().TurnedTriangles;
   progress.Report(0.35);
@@ -333,10 +331,6 @@ std::vector<Warning> DerivativesRun::FindOwnWarnings() const
   if (!this->NothingKnown.Words().empty())
   {
     warnings.push_back({ this->NothingKnown, this->SurfaceVersion });
-  }
-  for (const Sentence& text : this->Sentinels)
-  {
-    warnings.push_back({ text, this->FieldsVersion });
   }
   return warnings;
 }

@@ -68,7 +68,6 @@ private:
   std::vector<char> MissingRows; ///< per point or cell: not finite; empty if none is
   bool MissingOnCells = false;
   Sentence NothingKnown; ///< the warning that no triangle has data; otherwise empty
-  std::vector<Sentence> Sentinels; ///< warnings of the data
   Index Turned = 0;
   Index Undetermined = 0; ///< vertices whose Laplacian is NaN
   double MissedResidual = 0.0;

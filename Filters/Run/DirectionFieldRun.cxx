@@ -157,7 +157,8 @@ void DirectionFieldRun::MakeField(
     : settings.SmoothingLength / mesh.LengthUnit();
   core.HintWeight = settings.HintWeight / (h * h);
   core.MaximumNumberOfSteps = settings.MaximumNumberOfSteps;
-  const TangentVectors hints = MakeDirections(*this->Domain, input.ReadFields(), this->Parallel);
+  const TangentVectors hints =
+    MakeDirections(*this->Domain, this->ReadFields(input), this->Parallel);
   this->Field = MakeDirectionField(*this->Domain->SharedAssembler(), this->Domain->Points(),
     this->Domain->MakeTriangles(), hints, core, this->Parallel, progress, &this->Report);
   this->WithoutDirection = static_cast<Index>((this->Field.array() == 0.0).rowwise().all().count());

@@ -242,7 +242,7 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
   }
   this->Results.clear();
   const TriangleMesh& mesh = this->Domain->InputMesh();
-  const Fields fields = input.ReadFields();
+  const Fields fields = this->ReadFields(input);
   this->TakeSpeeds(fields, settings);
   SourceSet sources =
     this->FindSources(drawn, fields, settings.MaximumDistance, progress.Part(0.2, 0.3));

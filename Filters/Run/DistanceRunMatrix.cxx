@@ -25,7 +25,7 @@ DistanceRun::Matrix DistanceRun::FindEach(const BlockInput& input, Settings& giv
   ThrowProblems(std::move(problems));
   this->FieldsVersion = {}; // the next update has another result
   this->PrepareSurface(WithoutGivenAreas(input), settings, progress.Part(0.0, 0.1));
-  this->TakeSpeeds(input.ReadFields(), settings);
+  this->TakeSpeeds(this->ReadFields(input), settings);
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = *this->MeshOfSolvers;
   const auto all = static_cast<Index>(surface.Points().rows());

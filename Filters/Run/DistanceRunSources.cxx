@@ -7,6 +7,7 @@
 #include "Core/Foundation/DisjointSets.h"
 #include "Run/CellFields.h"
 #include "Run/FarPoints.h"
+#include "Run/FieldChecks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,22 +36,6 @@ double SpeedOfTriangle(const Fields& fields, Index row, const Triangles& triangl
   return sum / 3.0;
 }
 
-/// Throws InputError unless the numbers that count are finite and, if `nonNegative`, 0 or more.
-void RequireFinite(const std::vector<double>& numbers, const char* name, bool onCells,
-  bool nonNegative, const std::vector<char>& counts)
-{
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-  {
-    const bool isAllowed = std::isfinite(numbers[i]) && (!nonNegative || numbers[i] >= 0.0);
-    if (!isAllowed && counts[i] != 0)
-    {
-      throw ErrorAt(Word::Array(name), Sentence("is ") << numbers[i], onCells,
-        static_cast<Eigen::Index>(i),
-        nonNegative ? "allowed: finite numbers, 0 or more" : "allowed: finite numbers");
-    }
-  }
-}
-
 /// 1 / speed per triangle of InputMesh(); empty without speeds.
 std::vector<double> MakeSlowness(const Surface& surface, const Fields& fields)
 {
@@ -76,7 +61,15 @@ std::vector<double> MakeSlowness(const Surface& surface, const Fields& fields)
     }
     slowness.push_back(1.0 / SpeedOfTriangle(fields, ofInput, triangles, row));
   }
-  RequireFinite(fields.Speeds.Values, "SpeedArray", fields.Speeds.OnCells, true, counts);
+  for (std::size_t i = 0; i < counts.size(); ++i)
+  {
+    const double speed = fields.Speeds.Values[i];
+    if (counts[i] && !(std::isfinite(speed) && speed >= 0.0))
+    {
+      throw ErrorOfFactor(
+        Word::Array("SpeedArray"), speed, fields.Speeds.OnCells, static_cast<Eigen::Index>(i));
+    }
+  }
   return slowness;
 }
 
@@ -179,7 +172,6 @@ DistanceRun::SourceSet DistanceRun::FindMarked(const Fields& fields) const
   const Values& marks = fields.Data.Values;
   const std::vector<double>& starts = fields.StartTimes;
   SourceSet set;
-  std::vector<char> counts(starts.size(), 0);
   for (Eigen::Index i = 0; i < marks.rows(); ++i)
   {
     const double mark = marks(i, 0);
@@ -204,11 +196,14 @@ DistanceRun::SourceSet DistanceRun::FindMarked(const Fields& fields) const
     if (!starts.empty())
     {
       const auto row = static_cast<std::size_t>(i);
-      counts[row] = 1;
+      if (!std::isfinite(starts[row]))
+      {
+        throw ErrorAt(Word::Array("SourceTimes"), Sentence("is ") << starts[row], false, i,
+          "allowed: finite numbers");
+      }
       set.Starts.push_back(starts[row] / surface.InputMesh().LengthUnit());
     }
   }
-  RequireFinite(starts, "SourceTimes", false, false, counts);
   return set;
 }
 

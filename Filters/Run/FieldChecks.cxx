@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/FieldChecks.h"
 
+#include "Run/Sentinels.h"
+
 #include <cmath>
 #include <limits>
 
@@ -28,6 +30,13 @@ Located<std::vector<Index>> AsLabels(const Located<std::vector<double>>& numbers
   return labels;
 }
 
+InputError ErrorOfFactor(const Word& name, double number, bool onCells, Eigen::Index row)
+{
+  const InputError error =
+    ErrorAt(name, Sentence("is ") << number, onCells, row, "allowed: finite numbers, 0 or more (");
+  return InputError(Sentence(error.Message()) << AboutNoValue(name.Name) << ")");
+}
+
 void RequireFiniteDirections(const Points& vectors, bool onCells, const Word& name)
 {
   for (Eigen::Index i = 0; i < vectors.rows(); ++i)
@@ -47,8 +56,7 @@ void RequireRates(const Values& rates, const std::function<Eigen::Index(Index)>&
     {
       if (!(std::isfinite(rates(t, k)) && rates(t, k) >= 0.0))
       {
-        throw ErrorAt(Word::Array("DiffusionRateArray"), Sentence("is ") << rates(t, k), true,
-          cellOf(t), "allowed: finite numbers, 0 or more");
+        throw ErrorOfFactor(Word::Array("DiffusionRateArray"), rates(t, k), true, cellOf(t));
       }
     }
   }

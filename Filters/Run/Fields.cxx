@@ -3,6 +3,7 @@
 #include "Run/Fields.h"
 
 #include "Core/Surface/TangentVectors.h"
+#include "Run/FieldChecks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,9 +95,8 @@ void CheckFidelityFactors(const Fields& fields)
     const double factor = fields.FidelityFactors.Values[i];
     if (!(std::isfinite(factor) && factor >= 0.0))
     {
-      throw ErrorAt(Word::Array("FidelityArray"), Sentence("is ") << factor,
-        fields.FidelityFactors.OnCells, static_cast<Eigen::Index>(i),
-        "allowed: finite numbers, 0 or more");
+      throw ErrorOfFactor(Word::Array("FidelityArray"), factor, fields.FidelityFactors.OnCells,
+        static_cast<Eigen::Index>(i));
     }
   }
 }

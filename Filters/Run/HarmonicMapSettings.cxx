@@ -163,16 +163,16 @@ std::vector<Output> HarmonicMapSettings::Finish(const RunState& state, RunResult
     outputs.push_back({ "Points", Place::PerPoint, OutputType::Double,
       this->MovePoints(state, motion), Role::Coordinates });
   }
-  result.MissedByFinish = motion.MissedResidual;
+  result.MissedResidual = motion.MissedResidual;
   const double change =
     motion.VolumeBefore != 0.0 ? motion.VolumeAfter / motion.VolumeBefore - 1.0 : 0.0;
   if (std::abs(change) > LargestVolumeChange)
   {
     Sentence text(Word::Setting("MoveVertices"));
-    result.WarningsOfFinish.push_back(text << " changes the volume by " << 100.0 * change
-                                           << " %: shape was smoothed, too (for less, set "
-                                           << Word::Setting("NumberOfTimeSteps") << " or "
-                                           << Word::Setting("TimeStep") << " lower)");
+    result.WarnOnce(text << " changes the volume by " << 100.0 * change
+                         << " %: shape was smoothed, too (for less, set "
+                         << Word::Setting("NumberOfTimeSteps") << " or "
+                         << Word::Setting("TimeStep") << " lower)");
   }
   const TriangleMesh& mesh = state.Surface.InputMesh();
   outputs.push_back(

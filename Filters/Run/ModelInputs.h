@@ -52,20 +52,18 @@ struct RunState
   ProgressMonitor Progress;
 };
 
-/// What making the model of one surface, and finishing its results, have found.
+/// What making the model of one surface, or finishing its results, has found.
 struct RunResult
 {
   bool HasMissing = false;
   std::vector<Output> Numbers; ///< that the model depends on, the same at every step
-  double MissedResidual = 0.0; ///< of the solve for InitialFill Harmonic; see StepReport
-  double MissedByFinish = 0.0; ///< of the solves of Finish(), likewise
+  /// Of the solves of Finish() or of that for InitialFill Harmonic; see StepReport.
+  double MissedResidual = 0.0;
   /// Of the weights of AutomaticFidelity in the connected components, per vertex and column, or of
   /// all columns in one, by which the fidelity factors of the data are multiplied; no entry if there
   /// is one component.
   Values FidelityFactors;
-  bool HasUnfinishedMinimum = false; ///< a minimisation ended above its tolerance
   std::vector<Sentence> Warnings;
-  std::vector<Sentence> WarningsOfFinish; ///< of the step that is shown
 
   void AddNumber(const std::string& name, double value, OutputType type = OutputType::Double)
   {

@@ -254,6 +254,7 @@ std::unique_ptr<Model> MumfordShahSettings::Make(ModelInputs& inputs, RunResult&
 {
   PrepareData(*this, inputs, result);
   result.AddNumber("EffectiveFidelityWeight", this->FidelityWeight);
+  WarnOfUnlikeColumns(inputs, "process each alone", result);
   const double h = inputs.Units.CoreEdgeLength();
   if (inputs.Units.Natural)
   {

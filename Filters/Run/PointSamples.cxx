@@ -6,6 +6,7 @@
 #include "Core/Geometry/NearestPoints.h"
 #include "Run/CellFields.h"
 #include "Run/Fields.h"
+#include "Run/Sentinels.h"
 #include "Run/Surface.h"
 
 #include <Eigen/Cholesky>
@@ -34,7 +35,7 @@ bool IsWithin(const ProjectedSample& sample, double maximumDistance)
 
 void CheckSamples(const PointSamples& samples)
 {
-  const auto fail = [](const Sentence& text, std::size_t i, const char* allowed)
+  const auto fail = [](const Sentence& text, std::size_t i, const Sentence& allowed)
   { throw InputError(Sentence(text) << " at point " << i << " of the values; " << allowed); };
   for (std::size_t i = 0; i < static_cast<std::size_t>(samples.Given.rows()); ++i)
   {
@@ -51,7 +52,7 @@ void CheckSamples(const PointSamples& samples)
       !(std::isfinite(samples.Weights[i]) && samples.Weights[i] >= 0.0))
     {
       fail(Sentence(Word::Array("FidelityArray")) << " is " << samples.Weights[i], i,
-        "allowed: finite numbers, 0 or more");
+        Sentence("allowed: finite numbers, 0 or more (") << AboutNoValue("FidelityArray") << ")");
     }
   }
 }

@@ -81,7 +81,8 @@ void RandomFieldRun::Update(
   field.HasUnitVariance = settings.Normalize;
   Values fields(mesh.NumberOfVertices(), settings.NumberOfFields);
   RandomField source(surface.SharedAssembler(), CotanWeights(mesh, this->Parallel), field,
-    MakeVertexIds(surface, input.ReadFields()), Vector(), this->Parallel, progress.Part(0.2, 0.6));
+    MakeVertexIds(surface, this->ReadFields(input)), Vector(), this->Parallel,
+    progress.Part(0.2, 0.6));
   source.Draw(settings.RandomSeed, 0, fields, progress.Part(0.6, 1.0));
   this->MissedResidual = source.MissedResidual();
   Output output{ "RandomField", Place::PerVertex, OutputType::Double, std::move(fields),

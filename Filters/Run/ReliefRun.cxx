@@ -151,11 +151,11 @@ void ReliefRun::Update(const BlockInput& input, Settings& given, const ProgressM
 
 /// Per point; those that others represent have the heights of their representatives.
 Vector ReliefRun::MakeHeights(
-  const BlockInput& input, const ReliefSettings& settings, const Triangles& triangles) const
+  const BlockInput& input, const ReliefSettings& settings, const Triangles& triangles)
 {
   const Surface& surface = *this->Domain;
   const Points& points = surface.Points();
-  Fields fields = input.ReadFields();
+  Fields fields = this->ReadFields(input, "if it stands for no value, set a number in its place");
   MoveMarksToData(surface, fields, Reduction::Serial(), this->Parallel);
   Vector values = fields.Data.Values.col(0);
   for (Eigen::Index p = 0; p < values.size(); ++p)

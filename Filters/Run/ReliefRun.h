@@ -46,7 +46,7 @@ public:
 private:
   std::vector<Warning> FindOwnWarnings() const override;
   Vector MakeHeights(
-    const BlockInput& input, const ReliefSettings& settings, const Triangles& triangles) const;
+    const BlockInput& input, const ReliefSettings& settings, const Triangles& triangles);
   void ListResults(const Triangles& triangles, const Relief& relief);
 
   std::vector<Sentence> Sentences;

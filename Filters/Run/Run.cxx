@@ -203,7 +203,7 @@ void Run::MakeModel(
   TangentVectors directions;
   RunCollectively(
     processes, [&] { directions = MakeDirections(*block.Surface, fields, this->Parallel); });
-  block.Result = RunResult();
+  block.Result = block.Finished = RunResult();
   block.FinishedStep = -1;
   const ModelTraits traits = this->Settings->DescribeModel();
   block.Solvers.Configure(traits, this->Parallel);
@@ -383,12 +383,12 @@ void Run::Seek(int step, const ProgressMonitor& progress)
     if (block->FinishedStep != reached || block->FinishSettings != outputSettings)
     {
       block->FinishedStep = -1;
-      block->Result.WarningsOfFinish.clear();
+      block->Finished = RunResult();
       const bool onCells = this->Settings->DescribeModel().ResultOnCells;
       block->Outputs = this->Settings->Finish(
         { *block->Surface, block->Units, *block->Path, onCells ? block->Cells.get() : nullptr,
           this->Parallel, progress.Part(1.0, 1.0) },
-        block->Result);
+        block->Finished);
       const std::vector<Output>& numbers = block->Result.Numbers;
       block->Outputs.insert(block->Outputs.end(), numbers.begin(), numbers.end());
       block->FinishedStep = reached;

@@ -96,7 +96,7 @@ public:
     std::unique_ptr<SurfaceDiffusion::Surface> WholeSurface;
     UnitSystem Units;
     std::unique_ptr<Trajectory> Path;
-    RunResult Result;
+    RunResult Result, Finished; ///< of RunSettings::Make() and of Finish()
     std::vector<Output> Outputs; ///< of RunSettings::Finish(), and Result.Numbers
     int FinishedStep = -1; ///< the step of Outputs
     SettingsSnapshot FinishSettings; ///< of scope Output, that they were made with

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 namespace SurfaceDiffusion
 {
@@ -72,6 +73,15 @@ Sentence DescribeUnsettledSteps(const Shortfalls& found)
        << "; the last one still made up to " << 100.0 * found.UnsettledDecrease
        << " % of the decrease of the energy (smaller time steps need fewer)";
   return text;
+}
+
+/// The kind of a warning whose figures change from step to step.
+std::string WithoutFigures(const Sentence& sentence)
+{
+  std::string kind = sentence.Text();
+  const auto isFigure = [](char c) { return std::strchr("0123456789+-.e", c) != nullptr; };
+  kind.erase(std::remove_if(kind.begin(), kind.end(), isFigure), kind.end());
+  return kind;
 }
 
 } // namespace
@@ -206,7 +216,7 @@ Shortfalls Run::FindShortfalls() const
     found.Inputs.Add(block->SurfaceVersion);
     found.Inputs.Add(block->FieldsVersion);
     found.MissedResidual = std::max(
-      found.MissedResidual, std::max(block->Result.MissedResidual, block->Result.MissedByFinish));
+      found.MissedResidual, std::max(block->Result.MissedResidual, block->Finished.MissedResidual));
   }
   return found;
 }
@@ -247,7 +257,7 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
     " edges of the intrinsic Delaunay triangulation could not be flipped within the limit of 50 "
     "checks per side, or at triangles that are nearly flat: values can leave the bounds of the "
     "data there");
-  BlockSentences ofBlocks;
+  BlockSentences ofBlocks, ofFinish;
   Fingerprint inputs;
   double undetermined = 0.0;
   for (const auto& block : this->Blocks)
@@ -255,7 +265,7 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
     inputs.Add(block->SurfaceVersion);
     inputs.Add(block->FieldsVersion);
     ofBlocks.Add(block->Result.Warnings, block->Name);
-    ofBlocks.Add(block->Result.WarningsOfFinish, block->Name);
+    ofFinish.Add(block->Finished.Warnings, block->Name);
     undetermined += block->Undetermined.NumberOfComponents;
   }
   std::vector<Sentence> sentences;
@@ -263,6 +273,12 @@ std::vector<Warning> Run::FindWarnings(const Reduction& processes) const
   for (const Sentence& sentence : sentences)
   {
     warnings.push_back({ sentence, inputs });
+  }
+  sentences.clear();
+  ofFinish.AppendTo(sentences, this->Blocks.size());
+  for (const Sentence& sentence : sentences)
+  {
+    warnings.push_back({ sentence, inputs, WithoutFigures(sentence) });
   }
   const long long components = std::llround(processes.Sum(undetermined));
   if (components > 0)

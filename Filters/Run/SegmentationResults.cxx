@@ -195,10 +195,9 @@ std::vector<Output> SegmentationSettings::Finish(const RunState& state, RunResul
     WarnOfEmptyRegions(components, means, result);
   }
   const double gap = FindNumber(outputs, "Gap");
-  if (gap > this->StopTolerance && !result.HasUnfinishedMinimum)
+  if (gap > this->StopTolerance)
   {
-    result.HasUnfinishedMinimum = true; // reported once, not at every requested time
-    result.Warnings.push_back(
+    result.WarnOnce(
       Sentence("the minimisation ended at its largest number of iterations with a relative duality "
                "gap of ")
       << gap << ", above " << Word::Setting("StopTolerance"));

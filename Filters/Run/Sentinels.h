@@ -7,10 +7,14 @@
 namespace SurfaceDiffusion
 {
 
+/// What a user does about numbers of an array that stand for no value, such as "if it stands for no
+/// value, set 0 in its place".
+Sentence AboutNoValue(const std::string& array);
+
 /// A warning for each number that programs write where they have no value, such as -9999 or the fill
-/// value of netCDF, 9.969e36, that the known data have farther from all others than half of their range:
-/// are they values? Collective.
-std::vector<Sentence> AskForSentinels(
-  const Surface& surface, const Fields& fields, const Reduction& processes);
+/// value of netCDF, 9.969e36, that an array of numbers has farther from all others that count than
+/// half of their range: are they values? Collective. aboutData: in place of AboutNoValue() of data.
+std::vector<Sentence> AskForSentinels(const Surface& surface, const Fields& fields,
+  const Reduction& processes, const Sentence& aboutData = {});
 
 } // namespace SurfaceDiffusion

@@ -117,11 +117,10 @@ void RequireFiniteCoordinates(const Points& points, const ParallelFor& parallel)
     FirstWithout(parallel, count, [&](Index row) { return points.row(row).allFinite(); });
   if (i < count)
   {
-    std::ostringstream text;
-    text << "point " << i
-         << " of the input has coordinates that are not finite; allowed: finite ones, "
-         << "also of points that nothing uses, which ParaView's Clean (vtkCleanPolyData) removes";
-    throw std::runtime_error(text.str());
+    throw InputError(Sentence("point ")
+      << i
+      << " of the input has coordinates that are not finite; allowed: finite ones, also of points "
+         "that nothing uses (remove these, as ParaView's Clean, vtkCleanPolyData, does)");
   }
 }
 

@@ -5,6 +5,7 @@
 #include "Core/Surface/EdgeLengths.h"
 #include "Run/BlockSentences.h"
 #include "Run/Outputs.h"
+#include "Run/Sentinels.h"
 #include "Run/UnlikeEdges.h"
 
 #include <algorithm>
@@ -81,6 +82,11 @@ std::vector<Warning> SurfaceRun::FindAllWarnings(
     sum.CoincidenceDistance = std::max(sum.CoincidenceDistance, found.CoincidenceDistance);
     sum.MergesPoints = found.MergesPoints;
     surfaces.Add(runs[r]->SurfaceVersion);
+    for (const Sentence& sentence : runs[r]->Sentinels)
+    {
+      ofRuns.Add(sentence, blocks[r]);
+      causes.Add(runs[r]->FieldsVersion);
+    }
     for (const Warning& warning : runs[r]->FindOwnWarnings())
     {
       ofRuns.Add(warning.Sentence, blocks[r]);
@@ -153,6 +159,14 @@ void SurfaceRun::AppendLongEdges(std::vector<Warning>& warnings) const
   {
     warnings.push_back({ SentenceOfLongEdges(count), this->SurfaceVersion });
   }
+}
+
+Fields SurfaceRun::ReadFields(const BlockInput& input, const Sentence& aboutData)
+{
+  Fields fields = input.ReadFields();
+  this->Sentinels =
+    AskForSentinels(*this->Domain, fields, this->Domain->InputMesh().GetReduction(), aboutData);
+  return fields;
 }
 
 void SurfaceRun::Complete(const BlockInput& input, Settings& settings)

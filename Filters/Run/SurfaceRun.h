@@ -62,6 +62,8 @@ protected:
   /// Make the surface unless it is kept. Returns whether the result has to be computed.
   bool Prepare(const BlockInput& input, Settings& settings, const SurfaceOptions& options,
     const ProgressMonitor& progress);
+  /// The fields, of which FindAllWarnings() asks for sentinels; see AskForSentinels().
+  Fields ReadFields(const BlockInput& input, const Sentence& aboutData = {});
   /// The result of this input and these settings has been computed.
   void Complete(const BlockInput& input, Settings& settings);
 
@@ -84,6 +86,7 @@ private:
   const char* OfDegenerate;
   const char* OfCoincident;
   SettingsSnapshot SurfaceSettings, ModelSettings;
+  std::vector<Sentence> Sentinels; ///< warnings of the fields
   bool HasResult = false;
 };
 

@@ -147,6 +147,7 @@ std::unique_ptr<Model> TensorDiffusionSettings::Make(ModelInputs& inputs, RunRes
 {
   PrepareData(*this, inputs, result);
   result.AddNumber("EffectiveFidelityWeight", this->FidelityWeight);
+  WarnOfUnlikeColumns(inputs, "process each alone", result);
   const double h = inputs.Units.CoreEdgeLength();
   const double timeStep = inputs.Units.ToCore(this->TimeStep, 2.0, 0.0);
   const double fidelity = this->FidelityWeight * inputs.Units.ToCore(1.0, -2.0, 0.0);

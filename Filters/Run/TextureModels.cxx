@@ -263,7 +263,9 @@ std::vector<Output> TextureSettings::Finish(const RunState& state, RunResult& re
   if (contrast < LeastContrast * unit)
   {
     limits[1] = limits[0];
-    if (state.Path.Step() > 0 && this->InitialNoise > LeastContrast)
+    const bool isLast =
+      state.Path.Step() >= this->NumberOfTimeSteps || state.Path.CurrentModel().Finished();
+    if (isLast && state.Path.Step() > 0 && this->InitialNoise > LeastContrast)
     {
       result.WarnOnce(Sentence("no pattern has grown after ")
         << state.Path.Step() << " steps: the chemical that the texture shows varies by " << contrast

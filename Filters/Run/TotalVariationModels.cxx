@@ -356,6 +356,14 @@ TangentVectors TotalVariationModels::Directions() const
 std::unique_ptr<Model> TotalVariationSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   PrepareData(*this, inputs, result);
+  if (this->ChannelCoupling == ChannelCoupling::Joint && this->Color.IsRGB())
+  {
+    WarnOfUnlikeColumns(inputs,
+      Sentence("set ") << Word::Setting("ChannelCoupling") << " to "
+                       << Word::Choice(
+                            "ChannelCoupling", ChannelCoupling::PerChannel, "PerChannel"),
+      result);
+  }
   TotalVariationModels maker(*this, inputs);
   if (this->Blur.IsOn())
   {

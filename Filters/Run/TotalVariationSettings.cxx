@@ -245,11 +245,9 @@ std::vector<Output> TotalVariationSettings::Finish(const RunState& state, RunRes
   {
     gap = std::max(gap, record.Residual);
   }
-  if (this->Minimizes() && gap > this->StopTolerance && !result.HasUnfinishedMinimum)
+  if (this->Minimizes() && gap > this->StopTolerance)
   {
-    result.HasUnfinishedMinimum = true; // reported once, not at every requested time
-    result.Warnings.push_back(
-      Sentence("the minimisation ended at its largest number of iterations with a ")
+    result.WarnOnce(Sentence("the minimisation ended at its largest number of iterations with a ")
       << this->NameOfResidual() << " of " << gap << ", above " << Word::Setting("StopTolerance"));
   }
   return this->DataSettings::Finish(state, result);

@@ -39,8 +39,9 @@ public:
   int FindLastStep(const nanobind::object& progress);
   /// All warnings that hold, as lists of words.
   nanobind::list GetWarnings() const;
-  /// Those that hold now and did not hold at the last call.
+  /// Those that hold now and did not hold at the last call since ForgetWarnings().
   nanobind::list GetNewWarnings();
+  void ForgetWarnings() { this->Reported = {}; }
   nanobind::dict GetHistory() const;
   /// The read-only values of the classes for VTK, as lists of rows.
   nanobind::dict GetNumbers() const;

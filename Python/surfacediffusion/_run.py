@@ -278,7 +278,10 @@ class Runner:
 
     def warnings(self, run: Any) -> list[str]:
         """The warnings that hold, in the words of Python."""
-        return [spell(self.function, words, self.arrays) for words in run.warnings()]
+        return self._spell_all(run.warnings())
+
+    def _spell_all(self, sentences: list[Any]) -> list[str]:
+        return [spell(self.function, words, self.arrays) for words in sentences]
 
     def finish(
         self, run: Any, inputs: list[Input], make: Callable[[list[dict[str, Any]]], Any],
@@ -316,19 +319,21 @@ class Runner:
                 reporter.finish_part()
         warn(known)
 
+    def start(self, run: Any, inputs: list[Input]) -> None:
+        """Begin a run whose states visit() shows, and whose warnings it gives once."""
+        self.call(run.update, [i.core for i in inputs], self.settings, None)
+        run.forget_warnings()
+
     def visit(
         self, run: Any, inputs: list[Input], steps: list[int], progress: Progress
     ) -> Iterator[list[dict[str, Any]]]:
-        """The attributes of the result on each surface, at steps of a run that has been updated."""
-        known: list[str] = []
+        """The attributes of the result on each surface, at steps of a run after start()."""
         with ProgressReporter(progress, max(1, len(steps))) as reporter:
             for step in steps:
                 self.call(run.seek, step, reporter.callable)
                 reporter.finish_part()
-                sentences = self.warnings(run)
-                warn([sentence for sentence in sentences if sentence not in known])
-                known = sentences
-                yield self._attributes(run, inputs, sentences)
+                warn(self._spell_all(run.new_warnings()))
+                yield self._attributes(run, inputs, self.warnings(run))
 
     def _attributes(
         self, run: Any, inputs: list[Input], sentences: list[str]
@@ -362,7 +367,7 @@ class States(Generic[R]):
         # The run of the surface, with its factors, is that of these states until the last one.
         with given.surface._lock:
             self._run = given.surface._runs.pop(name, None) or _core.ModelRun(name)
-        runner.call(self._run.update, [given.core], runner.settings, None)
+        runner.start(self._run, [given])
         self._states = self._results()
         self._last: R | None = None
 

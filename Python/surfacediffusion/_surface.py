@@ -182,10 +182,6 @@ def data_components(array: NDArray[Any]) -> int:
 def _as_points(points: Any) -> NDArray[np.float64]:
     array = as_numbers("points", points)
     require_shape("points", array, array.shape[1:] == (3,) and len(array) > 0, "(n, 3) with n > 0")
-    infinite = ~np.isfinite(array).all(axis=1)
-    if infinite.any():
-        row = int(np.argmax(infinite))
-        raise ValueError(f"points has {array[row].tolist()} in row {row}; allowed: finite numbers")
     return np.array(array, dtype=np.float64, order="C")
 
 

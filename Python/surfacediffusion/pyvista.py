@@ -727,7 +727,7 @@ def _run(
     if times is None:
         output, reports = runner.finish(run, inputs, build, progress)
         return (output, reports) if return_result else output
-    runner.call(run.update, [given.core for given in inputs], runner.settings, None)
+    runner.start(run, inputs)
     steps = [_find_step(time, run, runner) for time in times]
     ordered = sorted(set(steps))
     built = dict(zip(ordered, map(build, runner.visit(run, inputs, ordered, progress))))

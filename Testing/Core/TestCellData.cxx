@@ -577,7 +577,10 @@ TEST(CellData, ErrorsNameTheCell)
   bad.Data.FidelityFactors.Values.assign(static_cast<std::size_t>(bad.Data.NumberOfCells), 1.0);
   bad.Data.FidelityFactors.Values[8] = -1.0;
   bad.Data.FidelityFactors.OnCells = true;
-  EXPECT_EQ(messageOf(bad), "FidelityArray is -1 at cell 8; allowed: finite numbers, 0 or more");
+  EXPECT_EQ(messageOf(bad),
+    "FidelityArray is -1 at cell 8; allowed: finite numbers, 0 or more (if it stands for no value, "
+    "set "
+    "0 in its place)");
 }
 
 } // namespace SurfaceDiffusion

@@ -558,7 +558,10 @@ TEST(DistanceRun, NamesWhatIsNotAllowed)
   expect(data, "Method is 0; allowed: 1 Eikonal or 3 Automatic together with Speeds");
   settings.Method = DistanceMethod::Eikonal;
   data.Speeds.Values[5] = -1.0;
-  expect(data, "Speeds is -1 at point 5; allowed: finite numbers, 0 or more");
+  expect(data,
+    "Speeds is -1 at point 5; allowed: finite numbers, 0 or more (if it stands for no value, set 0 "
+    "in "
+    "its place, which is a barrier, or mask it with Mask)");
   data.Speeds.Values.clear();
   data.StartTimes.assign(static_cast<std::size_t>(s.NumberOfVertices()), Never);
   expect(data, "StartTimes is inf at point 3; allowed: finite numbers");

@@ -3,13 +3,19 @@
 #include "RunInput.h"
 
 #include "Run/DirectionFieldRun.h"
+#include "Run/DistanceRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
+#include "Run/MumfordShahSettings.h"
 #include "Run/RandomFieldRun.h"
+#include "Run/ReliefRun.h"
+#include "Run/TensorDiffusionSettings.h"
 #include "Run/TextureSettings.h"
+#include "Run/TotalVariationSettings.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -220,6 +226,173 @@ TEST(RunWarnings, LengthsInEdgesOfComponentsThatAreUnlikeAreReported)
   unlike.Update(pair(0.01).Block(), field, ProgressMonitor());
   WarningLog log;
   ExpectOne(log.Report(unlike.FindWarnings()), { "lengths are in h" });
+}
+
+// Fill values such as that of netCDF are positive, and no test of a range finds them.
+TEST(RunWarnings, ANumberThatStandsForNoValueIsAskedForInEachArray)
+{
+  const double fill = 9.969209968386869e36;
+  RunInput input(Testing::Icosphere(3));
+  const auto points = static_cast<std::size_t>(input.Vertices.rows());
+  const auto triangles = static_cast<std::size_t>(input.Faces.rows());
+  input.Data.NumberOfCells = static_cast<Index>(triangles);
+  for (Index t = 0; t < input.Data.NumberOfCells; ++t)
+  {
+    input.Data.Cells.push_back(t);
+  }
+  const Fields good = input.Data;
+
+  HeatSettings heat;
+  heat.FidelityWeight = 1.0;
+  input.Data.FidelityFactors.Values.assign(points, 1.0);
+  EXPECT_TRUE(WarningsOf(input, heat).empty());
+  input.Data.FidelityFactors.Values[7] = fill;
+  ExpectOne(WarningsOf(input, heat),
+    { "1 value of FidelityArray is 9.96921e+36", "far from all others", "set 0 in its place" });
+  input.Data = good;
+  input.Data.Directions = { Points::Ones(input.Vertices.rows(), 3), false };
+  heat.AlongDiffusivity = 2.0;
+  heat.FidelityWeight = 0.0;
+  EXPECT_TRUE(WarningsOf(input, heat).empty());
+  input.Data.Directions.Values.row(3).setConstant(-9999.0);
+  ExpectOne(WarningsOf(input, heat), { "1 value of DirectionArray is -9999", "set NaN" });
+
+  TextureSettings texture;
+  texture.NumberOfTimeSteps = 1;
+  input.Data = good;
+  input.Data.Data = {};
+  input.Data.Rates = Values::Constant(input.Faces.rows(), 4, 20.0);
+  for (const bool isFill : { false, true })
+  {
+    input.Data.Rates.row(4).setConstant(isFill ? 1e20 : 20.0);
+    const std::vector<Sentence> warnings = WarningsOf(input, texture);
+    EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                [](const Sentence& warning) {
+                  return warning.Text().find("1 value of DiffusionRateArray is 1e+20") !=
+                    std::string::npos;
+                }),
+      isFill ? 1 : 0);
+  }
+
+  const auto warningsOfDistance = [&]
+  {
+    DistanceSettings settings;
+    DistanceRun run(SerialFor());
+    run.Update(input.Block(), settings, ProgressMonitor());
+    WarningLog log;
+    return log.Report(run.FindWarnings());
+  };
+  for (const bool onCells : { false, true })
+  {
+    input.Data = good;
+    input.Data.Data.Values.setZero();
+    input.Data.Data.Values(0, 0) = 1.0;
+    input.Data.Speeds = { std::vector<double>(onCells ? triangles : points, 1.0), onCells };
+    EXPECT_TRUE(warningsOfDistance().empty());
+    input.Data.Speeds.Values[5] = input.Data.Speeds.Values[9] = fill;
+    ExpectOne(warningsOfDistance(),
+      { "2 values of SpeedArray are 9.96921e+36",
+        "set 0 in its place, which is a barrier, or mask" });
+  }
+  input.Data.Speeds = {};
+  input.Data.StartTimes.assign(points, -9999.0); // of points that are no sources
+  input.Data.StartTimes[0] = 3.0;
+  EXPECT_TRUE(warningsOfDistance().empty());
+  input.Data.Data.Values(1, 0) = 2.0;
+  ExpectOne(warningsOfDistance(), { "1 value of SourceTimes is -9999", "let it be no source" });
+  input.Data.StartTimes.clear();
+  input.Data.Data.Values(9, 0) = -9999.0; // a source
+  ExpectOne(warningsOfDistance(), { "1 value of InputArray is -9999", "set NaN in its place" });
+  auto shapes = std::make_shared<SourceShapes>();
+  shapes->OfPoints = { 0, 5 };
+  shapes->Places = Points::Zero(2, 3);
+  shapes->StartTimes = { 0.0, -9999.0 };
+  input.Data.Data = {};
+  input.Data.Sources = shapes;
+  ExpectOne(warningsOfDistance(), { "1 value of SourceTimes is -9999" });
+
+  input.Data = good;
+  input.Data.Data.Values(6, 0) = -9999.0;
+  ReliefSettings relief;
+  relief.Height = 1e-5;
+  ReliefRun run(SerialFor());
+  run.Update(input.Block(), relief, ProgressMonitor());
+  WarningLog log;
+  ExpectOne(log.Report(run.FindWarnings()), { "1 value of InputArray is -9999", "set a number" });
+}
+
+TEST(RunWarnings, OfAStepThatIsShownHoldsForThatStepAndIsReportedOnce)
+{
+  RunInput input = NoisyNormals();
+  input.Vertices.col(0) *= 3.0;
+  input.Vertices.col(2) *= 0.5;
+  HarmonicMapSettings settings;
+  settings.MoveVertices = true;
+  settings.TimeStep = 1.0;
+  settings.NumberOfTimeSteps = 6;
+  SurfaceDiffusion::Run run(SerialFor());
+  StateOf(run, { input.Block() }, settings);
+  WarningLog log;
+  ExpectOne(log.Report(run.FindWarnings(Alone)), { "MoveVertices changes the volume by" });
+  run.Seek(5, ProgressMonitor()); // with another figure
+  EXPECT_EQ(run.FindWarnings(Alone).size(), 1u);
+  EXPECT_TRUE(log.Report(run.FindWarnings(Alone)).empty());
+
+  RunInput coarse(Testing::Subdivided(Testing::Tetrahedron(), 2));
+  coarse.Data.Data = {};
+  TextureSettings texture;
+  texture.FeatureSize = 40.0; // of a surface of about 3
+  texture.NumberOfTimeSteps = 40;
+  StateOf(run, { coarse.Block() }, texture);
+  const auto isSaid = [&]
+  {
+    const std::vector<Warning> warnings = run.FindWarnings(Alone);
+    return std::any_of(warnings.begin(), warnings.end(),
+      [](const Warning& warning)
+      { return warning.Sentence.Text().find("no pattern has grown") != std::string::npos; });
+  };
+  EXPECT_TRUE(isSaid());
+  run.Seek(20, ProgressMonitor()); // it may grow yet
+  EXPECT_FALSE(isSaid());
+}
+
+TEST(RunWarnings, ColumnsOfUnlikeNoiseUnderOneNormAreReported)
+{
+  RunInput input = NoisyNormals();
+  const auto isSaid = [&](const auto& settings, const std::string& apart)
+  {
+    for (const Sentence& warning : WarningsOf(input, settings))
+    {
+      if (warning.Text().find("the noise of the columns of InputArray goes from") !=
+        std::string::npos)
+      {
+        EXPECT_NE(warning.Text().find(apart), std::string::npos) << warning;
+        return true;
+      }
+    }
+    return false;
+  };
+  TotalVariationSettings joint, each;
+  joint.NumberOfTimeSteps = each.NumberOfTimeSteps = 1;
+  each.ChannelCoupling = ChannelCoupling::PerChannel;
+  MumfordShahSettings edges;
+  edges.NumberOfTimeSteps = 1;
+  TensorDiffusionSettings tensor;
+  tensor.NumberOfTimeSteps = 1;
+  for (const double scale : { 1.0, 3.0, 1e3, 1e-3 })
+  {
+    input.Data.Data.Values.col(1) *= scale;
+    const bool isUnlike = scale == 1e3 || scale == 1e-3;
+    EXPECT_EQ(isSaid(joint, "set ChannelCoupling to PerChannel"), isUnlike) << scale;
+    EXPECT_FALSE(isSaid(each, "")) << scale;
+    EXPECT_EQ(isSaid(edges, "process each alone"), isUnlike) << scale;
+    EXPECT_EQ(isSaid(tensor, "process each alone"), isUnlike) << scale;
+    input.Data.Data.Values.col(1) /= scale;
+  }
+  input.Data.Data.Values.col(2).setZero(); // vectors in a plane
+  EXPECT_FALSE(isSaid(joint, ""));
+  input.Data.Data.Values.col(2) = 1e-15 * input.Data.Data.Values.col(0);
+  EXPECT_FALSE(isSaid(joint, ""));
 }
 
 } // namespace SurfaceDiffusion

@@ -44,8 +44,10 @@ CASES = [
     (lambda: sd.Surface("a sphere", FACES), r"points has elements of type <U8; allowed: real.*"),
     (lambda: sd.Surface([[0, 0], [1]], FACES), r"points is \[\[0, 0\], \[1\]\]; allowed: an array.*"),
     (lambda: sd.Surface(points_with(np.nan), FACES),
-     r"points has \[0.0, nan, 1.0\] in row 3; allowed: finite numbers"),
-    (lambda: sd.Surface(points_with(np.inf), FACES), r"points has .*inf.* in row 3; allowed: .*"),
+     r"point 3 of the input has coordinates that are not finite; allowed: .* \(remove these, as .*\)"),
+    (lambda: sd.Surface(points_with(np.inf), FACES), r"point 3 of the input has coordinates that .*"),
+    (lambda: sd.Surface(np.vstack([POINTS, [3 * [np.nan]]]), FACES),  # a point that no face uses
+     r"point 5 of the input .*; allowed: .*, also of points that nothing uses \(remove these, .*\)"),
     (lambda: sd.Surface(POINTS * 1j, FACES), r"points has elements of type complex128; allowed: .*"),
     (lambda: sd.Surface(POINTS, faces_with(5)),
      r"faces has 5 in row 3; allowed: 0 to 4, the rows of points"),

@@ -6,6 +6,7 @@ import copy
 import multiprocessing
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -417,6 +418,22 @@ class Results(unittest.TestCase):
             self.assertGreater(last.step, 0)
             self.assertIs(states.last(), last)
             self.assertEqual(list(states), [])
+
+    def test_each_warning_of_a_run_is_given_once(self):
+        tetrahedron = sd.Surface(np.vstack([np.zeros(3), np.eye(3)]),
+                                 [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+        noisy = sd.Surface(self.surface.points + 0.05 * self.values[:, None], self.surface.triangles)
+        for make in (lambda: sd.turing_texture_steps(tetrahedron),
+                     lambda: sd.harmonic_map_steps(noisy, move_vertices=True, number_of_time_steps=6)):
+            for _ in range(2):  # as often as the function is called
+                with warnings.catch_warnings(record=True) as caught:
+                    warnings.simplefilter("always")
+                    states = make()
+                    self.assertGreater(len(list(states)), 5)
+                    states.last()
+                kinds = [re.sub(r"[-+.e0-9]+", "", str(one.message)) for one in caught]
+                self.assertGreater(len(kinds), 0)
+                self.assertEqual(len(kinds), len(set(kinds)), kinds)
 
     def test_results_stand_for_their_arrays(self):
         north = self.surface.points[:, 2] > 0
