@@ -17,6 +17,10 @@ namespace
 /// differ less, ways along edges are mostly those of the triangulation.
 constexpr double SmallestSaddle = 0.5;
 
+/// Of the length of an edge between its two triangles, relative, from which on their speeds are two, and
+/// fronts are refracted. Of smooth speeds on fine surfaces, jumps are smaller.
+constexpr double SmallestJump = 0.1;
+
 /// A triangle ABC in the plane: A at the origin, B at (Edge, 0), C above.
 struct LaidOut
 {
@@ -183,8 +187,6 @@ void GeodesicDistance::FindBehind()
 
 void GeodesicDistance::FindMedia()
 {
-  constexpr double smallestJump =
-    0.1; // relative; of smooth speeds on fine surfaces, jumps are smaller
   this->Medium.resize(this->Shapes.size());
   std::iota(this->Medium.begin(), this->Medium.end(), 0);
   const auto first = [this](Index t)
@@ -201,7 +203,7 @@ void GeodesicDistance::FindMedia()
     const Index behind = this->Behind[static_cast<std::size_t>(side)];
     const double edge = this->ShapeOf(side / 3).EdgeLength(side % 3);
     if (behind >= 0 &&
-      std::abs(this->ShapeOf(behind / 3).EdgeLength(behind % 3) - edge) <= smallestJump * edge)
+      std::abs(this->ShapeOf(behind / 3).EdgeLength(behind % 3) - edge) <= SmallestJump * edge)
     {
       this->Medium[static_cast<std::size_t>(first(side / 3))] = first(behind / 3);
     }
@@ -223,14 +225,15 @@ bool GeodesicDistance::FitsBehind(Index corner, Index vertex, const Memory& memo
 /// The start of a front before the side opposite a corner, which has this length here, from that behind
 /// and the times at both ends. These times and the curvature of the time along the side, in a plane the
 /// squared cosine of the angle of incidence over the radius, are the same on both sides. The radius does
-/// not become smaller: fronts would be early where the way does not come from behind.
+/// not become smaller: fronts would be early where the way does not come from behind. It stays where
+/// lengths all but agree, as with smooth speeds: it would drift from edge to edge.
 double GeodesicDistance::Refracted(
   Index corner, double edge, double one, double other, double start) const
 {
-  constexpr double roundOff = 1e-9;
+  constexpr double far = 1e6; // of a radius, in edges
   const Index side = this->Behind.empty() ? -1 : this->Behind[static_cast<std::size_t>(corner)];
   const double behind = side < 0 ? edge : this->ShapeOf(side / 3).EdgeLength(side % 3);
-  if (std::abs(behind - edge) <= roundOff * edge)
+  if (std::abs(behind - edge) <= SmallestJump * edge)
   {
     return start;
   }
@@ -239,7 +242,7 @@ double GeodesicDistance::Refracted(
   const double factor =
     std::max(1.0, (edge - slope) * (edge + slope) / ((behind - slope) * (behind + slope)));
   const double radius = factor * (middle - start);
-  return std::abs(slope) < behind && radius < edge / roundOff ? middle - radius : -Never;
+  return std::abs(slope) < behind && radius < far * edge ? middle - radius : -Never;
 }
 
 /// The first way to a corner of a triangle through the triangle.
@@ -299,12 +302,16 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
     this->Refracted(corner, edge, ofSecond, ofThird, isOther ? startOfThird : startOfSecond);
   const bool fitsSecond = this->FitsBehind(corner, second, memory);
   const bool fitsThird = this->FitsBehind(corner, third, memory);
-  const bool isPlane = start == -Never || !fitsSecond || !fitsThird ||
+  const double first = std::min(ofSecond, ofThird);
+  double through = start + triangle.FromPoint(ofSecond - start, ofThird - start);
+  // The point that a refracted front seems to come from may be too near: not before both ends.
+  const bool isTooNear = start != one.Start && start != other.Start && through < first;
+  const bool isPlane = start == -Never || !fitsSecond || !fitsThird || isTooNear ||
     (areTwoPoints && !startsAt(one, third) && !startsAt(other, second));
-  const double from = isPlane ? std::min(ofSecond, ofThird) : start;
-  const double da = ofSecond - from;
-  const double db = ofThird - from;
-  const double through = from + (isPlane ? triangle.FromPlane(da, db) : triangle.FromPoint(da, db));
+  if (isPlane)
+  {
+    through = first + triangle.FromPlane(ofSecond - first, ofThird - first);
+  }
   if (!(through < way.Time))
   {
     return way;
