@@ -5,6 +5,7 @@
 #include "Core/Geodesics/EikonalDistance.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
 #include "Meshes.h"
+#include "SteinerGraph.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,9 @@ namespace
 class Fronts
 {
 public:
-  explicit Fronts(const Surface& s, bool withSpeeds = false)
+  /// spread: the largest speed of a triangle over the smallest; ofDirections: the same in each.
+  explicit Fronts(
+    const Surface& s, bool withSpeeds = false, double spread = 1.0, double ofDirections = 1.0)
     : Mesh(MakeMesh(s))
     , Delaunay(
         IntrinsicDelaunay(this->Mesh, SerialFor(), ProgressMonitor(), BoundaryEdges::Keep).Mesh())
@@ -28,12 +31,27 @@ public:
     {
       positions.row(i) = s.Vertices.row(this->Mesh->InputVertex()[i]) / this->Mesh->LengthUnit();
     }
-    const std::vector<double> slowness(
-      static_cast<std::size_t>(this->Mesh->NumberOfTriangles()), 1.0);
-    this->Solver = std::make_unique<EikonalDistance>(this->Mesh, this->Delaunay, positions,
-      withSpeeds ? MakeFrontShapes(*this->Mesh, slowness, TangentVectors(0, 2), 1.0, 1.0)
-                 : FrontShapes(),
-      SerialFor(), ProgressMonitor());
+    if (withSpeeds)
+    {
+      std::vector<double> slowness;
+      TangentVectors directions(this->Mesh->NumberOfTriangles(), 2);
+      unsigned int seed = static_cast<unsigned int>(s.NumberOfVertices());
+      const auto random = [&]
+      {
+        seed = seed * 1664525U + 1013904223U;
+        return static_cast<double>(seed >> 8U) / (1U << 24U);
+      };
+      for (Index t = 0; t < this->Mesh->NumberOfTriangles(); ++t)
+      {
+        slowness.push_back(std::pow(spread, -random()));
+        const double angle = 2.0 * Pi * random();
+        directions.row(t) << std::cos(angle), std::sin(angle);
+      }
+      this->Shapes = MakeFrontShapes(*this->Mesh, slowness,
+        ofDirections == 1.0 ? TangentVectors(0, 2) : directions, ofDirections, 1.0);
+    }
+    this->Solver = std::make_unique<EikonalDistance>(
+      this->Mesh, this->Delaunay, positions, this->Shapes, SerialFor(), ProgressMonitor());
   }
 
   /// Per point of the surface, from pieces on its triangles.
@@ -62,6 +80,7 @@ public:
   }
 
   std::shared_ptr<const TriangleMesh> Mesh, Delaunay;
+  FrontShapes Shapes;
   std::unique_ptr<const EikonalDistance> Solver;
 };
 
@@ -110,6 +129,41 @@ TEST(EikonalDistance, OverTetrahedraIsThatOfTheirEdges)
         EXPECT_GE(error, -0.01 * largest) << seed;
       }
       EXPECT_LT(sum / 3.0, 0.02 * largest) << seed;
+    }
+  }
+}
+
+// Fronts are refracted at edges, and go along them in the faster triangle.
+TEST(EikonalDistance, OfSpeedsThatJumpIsNotEarlierThanTheShortestWay)
+{
+  std::vector<Surface> surfaces = { Icosphere(0), Icosphere(1) };
+  surfaces[0].Vertices.col(0) *= 4.0;
+  surfaces[1].Vertices.col(2) *= 0.3;
+  for (unsigned int seed = 1; seed <= 10; ++seed)
+  {
+    surfaces.push_back(Tetrahedron(RandomCorners(seed)));
+  }
+  for (const double spread : { 2.0, 10.0, 100.0 })
+  {
+    for (const double ofDirections : { 1.0, 2.0 })
+    {
+      for (std::size_t k = 0; k < surfaces.size(); ++k)
+      {
+        const Surface& s = surfaces[k];
+        SCOPED_TRACE(testing::Message() << k << ", " << spread << ", " << ofDirections);
+        const Fronts fronts(s, true, spread, ofDirections);
+        const std::vector<double> found = fronts.FromCorner(fronts.Mesh->InputTriangle()[0], 0);
+        const auto expected = TimesOverGraph(*fronts.Mesh, fronts.Shapes,
+          fronts.Mesh->TriangleVertices()(0, 0), s.NumberOfVertices() == 4 ? 150 : 40);
+        const double unit = fronts.Mesh->LengthUnit();
+        const double largest = unit * *std::max_element(expected.begin(), expected.end());
+        for (std::size_t v = 0; v < expected.size(); ++v)
+        {
+          const auto i = static_cast<std::size_t>(fronts.Mesh->InputVertex()[v]);
+          EXPECT_GE(found[i], unit * expected[v] - 0.01 * largest) << i;
+          EXPECT_LE(found[i], unit * expected[v] + 0.03 * largest) << i;
+        }
+      }
     }
   }
 }

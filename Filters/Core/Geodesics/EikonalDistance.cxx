@@ -27,8 +27,20 @@ constexpr double EnoughSquares = 1500.0;
 /// Refinement ends with this many triangles, or four times the given ones.
 constexpr Index EnoughTriangles = 50000;
 
+/// r^2 - 1 + 1 / r^2, where r is the ratio of the largest speed in a triangle to the smallest one.
+double StretchOf(const TriangleMesh::Shape& given, const TriangleMesh::Shape& image)
+{
+  const double along = image.Length / given.Length; // the map takes x to along x + shear y
+  const double shear = (image.X - along * given.X) / given.Y;
+  const double across = image.Y / given.Y;
+  const double squares = along * along + shear * shear + across * across;
+  const double ratios = squares / (along * across); // r + 1 / r
+  return std::isfinite(ratios) ? ratios * ratios - 3.0 : 1.0;
+}
+
 /// Per vertex, the length up to which edges of its component stay: any, unless one of them is long.
-std::vector<double> FindLengths(const TriangleMesh& mesh)
+/// Triangles that fronts see stretched have to be smaller.
+std::vector<double> FindLengths(const TriangleMesh& mesh, const FrontShapes& shapes)
 {
   const std::vector<Index>& begin = mesh.ComponentsBegin();
   const auto n = static_cast<std::size_t>(mesh.NumberOfVertices());
@@ -39,6 +51,7 @@ std::vector<double> FindLengths(const TriangleMesh& mesh)
   }
   std::vector<double> areas(begin.size(), 0.0);
   std::vector<double> longest(begin.size(), 0.0);
+  std::vector<double> stretch(begin.size(), 1.0);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const TriangleMesh::Shape shape = mesh.Shapes()[static_cast<std::size_t>(t)];
@@ -46,13 +59,19 @@ std::vector<double> FindLengths(const TriangleMesh& mesh)
     areas[c] += shape.Area();
     longest[c] =
       std::max({ longest[c], shape.EdgeLength(0), shape.EdgeLength(1), shape.EdgeLength(2) });
+    if (!shapes.empty())
+    {
+      stretch[c] = std::max(stretch[c], StretchOf(shape, shapes[static_cast<std::size_t>(t)]));
+    }
   }
   std::vector<double> lengths(n);
   for (std::size_t i = 0; i < n; ++i)
   {
     const double area = areas[componentOf[i]];
     const double edge = longest[componentOf[i]];
-    lengths[i] = FewSquares * edge * edge > area ? std::sqrt(area / EnoughSquares) : 2.0 * edge;
+    lengths[i] = FewSquares * edge * edge > area
+      ? std::sqrt(area / (EnoughSquares * stretch[componentOf[i]]))
+      : 2.0 * edge;
   }
   return lengths;
 }
@@ -132,7 +151,7 @@ bool EikonalDistance::Refine(
   const Points& positions, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = *this->Mesh;
-  const std::vector<double> lengths = FindLengths(mesh);
+  const std::vector<double> lengths = FindLengths(mesh, this->Shapes);
   bool hasLongEdges = false;
   for (Index t = 0; t < mesh.NumberOfTriangles() && !hasLongEdges; ++t)
   {

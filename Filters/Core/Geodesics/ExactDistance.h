@@ -57,8 +57,8 @@ public:
     Memories& memories, const ProgressMonitor& progress = ProgressMonitor()) const;
 
   /// Whether Find() over the whole mesh, or as often as `times` says, takes at most about a second: the
-  /// mesh has up to some 100,000 triangles, fewer if very many of them share a vertex. Further sources
-  /// make the work less.
+  /// mesh has up to some 100,000 triangles, fewer if very many of them share a vertex and others come
+  /// after these: not in a disk that is cut from its middle. Further sources make the work less.
   static bool TakesAtMostASecond(const TriangleMesh& mesh, double times = 1.0);
 
 private:

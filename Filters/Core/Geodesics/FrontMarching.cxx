@@ -33,6 +33,8 @@ double SmallestFall(int falls)
 GeodesicDistance::Memory::Memory(Index vertices)
   : Found{ std::vector<double>(static_cast<std::size_t>(vertices), Never),
     std::vector<Index>(static_cast<std::size_t>(vertices), -1) }
+  , Starts(this->Found.Times.size(), 0.0)
+  , Media(this->Found.Times.size(), -1)
   , Falls(static_cast<std::size_t>(vertices), 0)
 {
 }
@@ -185,6 +187,8 @@ std::vector<Index> GeodesicDistance::FindNear(const std::vector<FrontSource>& so
       reached.push_back(source.Vertex);
       arrival.Times[v] = source.Time;
       arrival.Sources[v] = static_cast<Index>(k);
+      memory.Starts[v] = source.Start;
+      memory.Media[v] = -1;
       queue.emplace(source.Time, source.Vertex);
     }
   }
@@ -210,7 +214,7 @@ std::vector<Index> GeodesicDistance::FindNear(const std::vector<FrontSource>& so
       {
         const Index neighbour = mesh.OtherCorner(corner, step);
         const Index at = corner - corner % 3 + (corner % 3 + step) % 3;
-        Way way = this->WayThrough(at, fronts, arrival);
+        Way way = this->WayThrough(at, fronts, memory);
         double& known = arrival.Times[static_cast<std::size_t>(neighbour)];
         const double limit = limitAt(static_cast<std::size_t>(neighbour));
         int& fallsHere = memory.Falls[static_cast<std::size_t>(neighbour)];
@@ -231,6 +235,7 @@ std::vector<Index> GeodesicDistance::FindNear(const std::vector<FrontSource>& so
             sourceOf.push_back(sourceOf[static_cast<std::size_t>(way.Front)]);
           }
           way.Front = around;
+          way.Start = time;
         }
         if (known == Never)
         {
@@ -238,6 +243,8 @@ std::vector<Index> GeodesicDistance::FindNear(const std::vector<FrontSource>& so
         }
         known = way.Time;
         arrival.Sources[static_cast<std::size_t>(neighbour)] = way.Front;
+        memory.Starts[static_cast<std::size_t>(neighbour)] = way.Start;
+        memory.Media[static_cast<std::size_t>(neighbour)] = way.Medium;
         queue.emplace(way.Time, neighbour);
       }
     }

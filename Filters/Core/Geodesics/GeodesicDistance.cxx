@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -15,6 +16,10 @@ namespace
 /// The angle above 2 pi from which on a vertex is a saddle, in radians. On fine surfaces, whose angles
 /// differ less, ways along edges are mostly those of the triangulation.
 constexpr double SmallestSaddle = 0.5;
+
+/// Of the length of an edge between its two triangles, relative, from which on their speeds are two, and
+/// fronts are refracted. Of smooth speeds on fine surfaces, jumps are smaller.
+constexpr double SmallestJump = 0.1;
 
 /// A triangle ABC in the plane: A at the origin, B at (Edge, 0), C above.
 struct LaidOut
@@ -67,6 +72,7 @@ GeodesicDistance::GeodesicDistance(std::shared_ptr<const TriangleMesh> mesh, Fro
   , Shapes(std::move(shapes))
 {
   this->FindCorners();
+  this->FindBehind();
 }
 
 /// The vertices of boundaries and barriers with an open angle above pi, and others with one above 2 pi.
@@ -151,14 +157,103 @@ void GeodesicDistance::FindGates(const std::vector<char>& isOnRim)
   }
 }
 
+void GeodesicDistance::FindBehind()
+{
+  const TriangleMesh& mesh = *this->Mesh;
+  const auto lengthOf = [this](Index side) { return this->ShapeOf(side / 3).EdgeLength(side % 3); };
+  this->Behind.assign(3 * this->Shapes.size(), -1);
+  for (Index side = 0; side < static_cast<Index>(this->Behind.size()); ++side)
+  {
+    const auto i = static_cast<std::size_t>(mesh.OtherCorner(side, 1));
+    const Index j = mesh.OtherCorner(side, 2);
+    double least = Never;
+    for (Index k = mesh.VertexCornersBegin()[i]; k < mesh.VertexCornersBegin()[i + 1]; ++k)
+    {
+      const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(k)];
+      for (const int step : { 1, 2 })
+      {
+        const Index other = corner - corner % 3 + (corner % 3 + 3 - step) % 3;
+        if (corner / 3 != side / 3 && !IsBarrier(this->Shapes, corner / 3) &&
+          mesh.OtherCorner(corner, step) == j && lengthOf(other) < least)
+        {
+          least = lengthOf(other);
+          this->Behind[static_cast<std::size_t>(side)] = other;
+        }
+      }
+    }
+  }
+  this->FindMedia();
+}
+
+void GeodesicDistance::FindMedia()
+{
+  this->Medium.resize(this->Shapes.size());
+  std::iota(this->Medium.begin(), this->Medium.end(), 0);
+  const auto first = [this](Index t)
+  {
+    while (this->Medium[static_cast<std::size_t>(t)] != t)
+    {
+      Index& next = this->Medium[static_cast<std::size_t>(t)];
+      t = next = this->Medium[static_cast<std::size_t>(next)];
+    }
+    return t;
+  };
+  for (Index side = 0; side < static_cast<Index>(this->Behind.size()); ++side)
+  {
+    const Index behind = this->Behind[static_cast<std::size_t>(side)];
+    const double edge = this->ShapeOf(side / 3).EdgeLength(side % 3);
+    if (behind >= 0 &&
+      std::abs(this->ShapeOf(behind / 3).EdgeLength(behind % 3) - edge) <= SmallestJump * edge)
+    {
+      this->Medium[static_cast<std::size_t>(first(side / 3))] = first(behind / 3);
+    }
+  }
+  for (std::size_t t = 0; t < this->Medium.size(); ++t)
+  {
+    this->Medium[t] = first(static_cast<Index>(t));
+  }
+}
+
+/// Whether the way to an end of the side opposite a corner has a radius of the medium behind.
+bool GeodesicDistance::FitsBehind(Index corner, Index vertex, const Memory& memory) const
+{
+  const Index behind = this->Behind.empty() ? -1 : this->Behind[static_cast<std::size_t>(corner)];
+  const Index medium = memory.Media[static_cast<std::size_t>(vertex)];
+  return behind < 0 || medium < 0 || medium == this->Medium[static_cast<std::size_t>(behind / 3)];
+}
+
+/// The start of a front before the side opposite a corner, which has this length here, from that behind
+/// and the times at both ends. These times and the curvature of the time along the side, in a plane the
+/// squared cosine of the angle of incidence over the radius, are the same on both sides. The radius does
+/// not become smaller: fronts would be early where the way does not come from behind. It stays where
+/// lengths all but agree, as with smooth speeds: it would drift from edge to edge.
+double GeodesicDistance::Refracted(
+  Index corner, double edge, double one, double other, double start) const
+{
+  constexpr double far = 1e6; // of a radius, in edges
+  const Index side = this->Behind.empty() ? -1 : this->Behind[static_cast<std::size_t>(corner)];
+  const double behind = side < 0 ? edge : this->ShapeOf(side / 3).EdgeLength(side % 3);
+  if (std::abs(behind - edge) <= SmallestJump * edge)
+  {
+    return start;
+  }
+  const double slope = other - one;
+  const double middle = 0.5 * (one + other);
+  const double factor =
+    std::max(1.0, (edge - slope) * (edge + slope) / ((behind - slope) * (behind + slope)));
+  const double radius = factor * (middle - start);
+  return std::abs(slope) < behind && radius < far * edge ? middle - radius : -Never;
+}
+
 /// The first way to a corner of a triangle through the triangle.
 GeodesicDistance::Way GeodesicDistance::WayThrough(
-  Index corner, const std::vector<FrontSource>& fronts, const Arrival& arrival) const
+  Index corner, const std::vector<FrontSource>& fronts, const Memory& memory) const
 {
+  const Arrival& arrival = memory.Found;
   const Index t = corner / 3;
   if (IsBarrier(this->Shapes, t))
   {
-    return { Never, -1, -1 };
+    return { Never, -1, -1, 0.0, -1 };
   }
   const int a = corner % 3;
   const TriangleMesh::Shape shape = this->ShapeOf(t);
@@ -170,10 +265,13 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
   const double ofThird = arrival.Times[static_cast<std::size_t>(third)];
   const Index bySecond = arrival.Sources[static_cast<std::size_t>(second)];
   const Index byThird = arrival.Sources[static_cast<std::size_t>(third)];
-  Way way{ ofSecond + toSecond, bySecond, second };
+  const double startOfSecond = memory.Starts[static_cast<std::size_t>(second)];
+  const double startOfThird = memory.Starts[static_cast<std::size_t>(third)];
+  const Index medium = this->Medium.empty() ? -1 : this->Medium[static_cast<std::size_t>(t)];
+  Way way{ ofSecond + toSecond, bySecond, second, startOfSecond, medium };
   if (ofThird + toThird < way.Time)
   {
-    way = { ofThird + toThird, byThird, third };
+    way = { ofThird + toThird, byThird, third, startOfThird, medium };
   }
   if (bySecond < 0 || byThird < 0)
   {
@@ -195,17 +293,37 @@ GeodesicDistance::Way GeodesicDistance::WayThrough(
   {
     return way;
   }
-  const LaidOut triangle(shape.EdgeLength(a), toSecond, toThird);
-  const bool isPlane = areTwoPoints && !startsAt(one, third) && !startsAt(other, second);
+  const double edge = shape.EdgeLength(a);
+  const LaidOut triangle(edge, toSecond, toThird);
   // Of a way around a corner and another one, the point where both begin
   const bool isOther =
-    startsAt(other, second) || (!startsAt(one, third) && other.Start < one.Start);
-  const double start = isPlane ? std::min(ofSecond, ofThird) : (isOther ? other : one).Start;
-  const double da = ofSecond - start;
-  const double db = ofThird - start;
-  const double through =
-    start + (isPlane ? triangle.FromPlane(da, db) : triangle.FromPoint(da, db));
-  return through < way.Time ? Way{ through, ofSecond < ofThird ? bySecond : byThird, -1 } : way;
+    startsAt(other, second) || (!startsAt(one, third) && startOfThird < startOfSecond);
+  const double start =
+    this->Refracted(corner, edge, ofSecond, ofThird, isOther ? startOfThird : startOfSecond);
+  const bool fitsSecond = this->FitsBehind(corner, second, memory);
+  const bool fitsThird = this->FitsBehind(corner, third, memory);
+  const double first = std::min(ofSecond, ofThird);
+  double through = start + triangle.FromPoint(ofSecond - start, ofThird - start);
+  // The point that a refracted front seems to come from may be too near: not before both ends.
+  const bool isTooNear = start != one.Start && start != other.Start && through < first;
+  const bool isPlane = start == -Never || !fitsSecond || !fitsThird || isTooNear ||
+    (areTwoPoints && !startsAt(one, third) && !startsAt(other, second));
+  if (isPlane)
+  {
+    through = first + triangle.FromPlane(ofSecond - first, ofThird - first);
+  }
+  if (!(through < way.Time))
+  {
+    return way;
+  }
+  const bool isFirst = ofSecond < ofThird;
+  double startHere = bySecond == byThird ? start : (isFirst ? startOfSecond : startOfThird);
+  if (fitsSecond != fitsThird)
+  {
+    startHere =
+      this->Refracted(corner, edge, ofSecond, ofThird, fitsSecond ? startOfSecond : startOfThird);
+  }
+  return { through, isFirst ? bySecond : byThird, -1, startHere, medium };
 }
 
 } // namespace SurfaceDiffusion

@@ -33,7 +33,10 @@ struct FrontSource
 /// from there (M. Novotni, R. Klein, WSCG 2002): in a plane such distances are exact, and on curved
 /// surfaces a front keeps its curvature. If they are reached from different points of one source, as
 /// beside a line, the front is plane. In both cases the way has to cross the edge between them, and
-/// another triangle has to be behind it, unless the source is on it; others go along an edge.
+/// another triangle has to be behind it, unless the source is on it; others go along an edge. At an edge
+/// that its two triangles give different lengths, fronts are refracted: the radius of the front becomes
+/// another one (V. Cerveny, Seismic Ray Theory, 2001), and a front that goes along the edge, as fast as
+/// in the faster triangle, is plane in the other one.
 ///
 /// Each time is the length of a path over triangles laid out side by side. A vertex whose time
 /// decreases later is visited again, and obtuse triangles, which speeds that differ between
@@ -76,6 +79,10 @@ public:
     void Clear(const std::vector<Index>& vertices);
 
     Arrival Found;
+    /// The time at the point that each way seems to come from in a plane with the speeds of its last
+    /// triangle; - Never: of plane fronts.
+    std::vector<double> Starts;
+    std::vector<Index> Media; ///< of the last triangles, see Medium; -1: none
     std::vector<int> Falls; ///< of each time
   };
 
@@ -98,10 +105,13 @@ private:
     double Time;
     Index Front; ///< that it comes with
     Index Along; ///< the vertex at the other end of the edge that it goes along; -1: along none
+    double Start; ///< see Memory
+    Index Medium;
   };
 
-  Way WayThrough(
-    Index corner, const std::vector<FrontSource>& fronts, const Arrival& arrival) const;
+  Way WayThrough(Index corner, const std::vector<FrontSource>& fronts, const Memory& memory) const;
+  bool FitsBehind(Index corner, Index vertex, const Memory& memory) const;
+  double Refracted(Index corner, double edge, double one, double other, double start) const;
   TriangleMesh::Shape ShapeOf(Index t) const
   {
     return this->Shapes.empty() ? this->Mesh->Shapes()[t]
@@ -109,6 +119,8 @@ private:
   }
   void FindCorners();
   void FindGates(const std::vector<char>& isOnRim);
+  void FindBehind();
+  void FindMedia();
   std::vector<double> LongestEdges() const;
   std::vector<double> TimesOfSources(const std::vector<FrontSource>& sources) const;
   bool IsAmongSources(const FrontSource& source, const std::vector<double>& times) const;
@@ -117,6 +129,10 @@ private:
   FrontShapes Shapes;
   std::vector<char> IsCorner; ///< per vertex
   std::vector<char> IsClosed; ///< per side 3 t + a, opposite corner a: no way comes through it
+  /// Of Shapes. Per side, this side of the other triangle where it is shortest; -1: there is none. Per
+  /// triangle, a number that is the same in triangles that give the sides between them about the same
+  /// length.
+  std::vector<Index> Behind, Medium;
 };
 
 } // namespace SurfaceDiffusion
