@@ -424,7 +424,7 @@ class Results(unittest.TestCase):
                                  [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
         noisy = sd.Surface(self.surface.points + 0.05 * self.values[:, None], self.surface.triangles)
         for make in (lambda: sd.turing_texture_steps(tetrahedron),
-                     lambda: sd.harmonic_map_steps(noisy, move_vertices=True, number_of_time_steps=6)):
+                     lambda: sd.harmonic_map_steps(noisy, move_vertices=True, time_step=10.0, number_of_time_steps=6)):
             for _ in range(2):  # as often as the function is called
                 with warnings.catch_warnings(record=True) as caught:
                     warnings.simplefilter("always")

@@ -3,6 +3,7 @@
 #include "Core/Geodesics/GeodesicDistance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -161,24 +162,46 @@ void GeodesicDistance::FindBehind()
 {
   const TriangleMesh& mesh = *this->Mesh;
   const auto lengthOf = [this](Index side) { return this->ShapeOf(side / 3).EdgeLength(side % 3); };
+  const auto vertices = this->Shapes.empty() ? 0 : mesh.NumberOfVertices();
   this->Behind.assign(3 * this->Shapes.size(), -1);
-  for (Index side = 0; side < static_cast<Index>(this->Behind.size()); ++side)
+  std::vector<std::pair<Index, Index>> sides; // of the edges to vertices of higher numbers
+  for (Index i = 0; i < vertices; ++i)
   {
-    const auto i = static_cast<std::size_t>(mesh.OtherCorner(side, 1));
-    const Index j = mesh.OtherCorner(side, 2);
-    double least = Never;
-    for (Index k = mesh.VertexCornersBegin()[i]; k < mesh.VertexCornersBegin()[i + 1]; ++k)
+    sides.clear();
+    const Index end = mesh.VertexCornersBegin()[static_cast<std::size_t>(i) + 1];
+    for (Index k = mesh.VertexCornersBegin()[static_cast<std::size_t>(i)]; k < end; ++k)
     {
       const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(k)];
       for (const int step : { 1, 2 })
       {
-        const Index other = corner - corner % 3 + (corner % 3 + 3 - step) % 3;
-        if (corner / 3 != side / 3 && !IsBarrier(this->Shapes, corner / 3) &&
-          mesh.OtherCorner(corner, step) == j && lengthOf(other) < least)
+        const Index j = mesh.OtherCorner(corner, step);
+        if (j > i && !IsBarrier(this->Shapes, corner / 3))
         {
-          least = lengthOf(other);
-          this->Behind[static_cast<std::size_t>(side)] = other;
+          sides.emplace_back(j, corner - corner % 3 + (corner % 3 + 3 - step) % 3);
         }
+      }
+    }
+    std::sort(sides.begin(), sides.end());
+    for (auto begin = sides.begin(); begin != sides.end();)
+    {
+      const auto next = std::find_if(
+        begin, sides.end(), [j = begin->first](const auto& side) { return side.first != j; });
+      std::array<Index, 2> shortest = { -1, -1 };
+      for (auto side = begin; side != next; ++side)
+      {
+        if (shortest[0] < 0 || lengthOf(side->second) < lengthOf(shortest[0]))
+        {
+          shortest = { side->second, shortest[0] };
+        }
+        else if (shortest[1] < 0 || lengthOf(side->second) < lengthOf(shortest[1]))
+        {
+          shortest[1] = side->second;
+        }
+      }
+      for (; begin != next; ++begin)
+      {
+        this->Behind[static_cast<std::size_t>(begin->second)] =
+          begin->second == shortest[0] ? shortest[1] : shortest[0];
       }
     }
   }
