@@ -203,8 +203,10 @@ TEST(RunWarnings, LengthsInEdgesOfComponentsThatAreUnlikeAreReported)
 {
   const auto pair = [](double factor)
   {
-    return RunInput(Testing::Joined(Testing::Icosphere(3),
+    RunInput input(Testing::Joined(Testing::Icosphere(3),
       Testing::Moved(Testing::Scaled(Testing::Icosphere(2), factor), { 5.0, 0.0, 0.0 })));
+    input.Data.Data = {};
+    return input;
   };
   TextureSettings texture;
   texture.NumberOfTimeSteps = 1;
