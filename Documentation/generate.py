@@ -52,7 +52,7 @@ FILTERS = [
     Filter("curvature", "vtkSurfaceCurvatureFilter", ("Curvature",)),
     Filter("derivatives", "vtkSurfaceDerivativesFilter", ("Derivatives",)),
     Filter("distance", "vtkSurfaceDistanceFilter",
-           ("GeodesicDistance", "HeatDistance", "DistanceRun")),
+           ("EikonalDistance", "GeodesicDistance", "HeatDistance", "DistanceRun")),
     Filter("random_field", "vtkSurfaceRandomFieldFilter", ("Fields",)),
     Filter("relief", "vtkSurfaceReliefFilter", ("Relief",)),
     Filter("direction_field", "vtkSurfaceDirectionFieldFilter",
