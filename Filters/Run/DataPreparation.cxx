@@ -91,6 +91,22 @@ void CompletePreparation(const DataSettings& settings, ModelInputs& inputs, RunR
   }
 }
 
+PointData DataOfColumns(const PointData& data, Eigen::Index first, Eigen::Index count)
+{
+  if (count == data.Given.cols())
+  {
+    return data;
+  }
+  PointData some;
+  some.Given = data.Given.middleCols(first, count);
+  some.Start = data.Start.middleCols(first, count);
+  some.Missing = data.Missing;
+  some.Fixed = data.Fixed;
+  some.FidelityFactors = data.FidelityFactors;
+  some.Measured = data.Measured;
+  return some;
+}
+
 void WarnOfUnlikeColumns(const ModelInputs& inputs, const Sentence& apart, RunResult& result)
 {
   const PointData& data = inputs.Data;
@@ -98,15 +114,12 @@ void WarnOfUnlikeColumns(const ModelInputs& inputs, const Sentence& apart, RunRe
   {
     return;
   }
-  PointData column = data;
   std::vector<double> noise;
   for (Eigen::Index k = 0; k < data.Given.cols(); ++k)
   {
-    column.Given = data.Given.col(k);
-    column.Start = data.Start.col(k);
-    noise.push_back(
-      EstimateNoise(*inputs.Surface.SharedAssembler(), inputs.Surface.Points(), column).Level() /
-      NoiseGain(inputs) * inputs.Units.ValueUnit);
+    const NoiseEstimate found = EstimateNoise(
+      *inputs.Surface.SharedAssembler(), inputs.Surface.Points(), DataOfColumns(data, k, 1));
+    noise.push_back(found.Level() / NoiseGain(inputs) * inputs.Units.ValueUnit);
   }
   constexpr double factor = 5.0;
   constexpr double roundOff = 1e-6; // of a component of vectors in a plane

@@ -33,6 +33,9 @@ double NoiseGain(const ModelInputs& inputs);
 /// The standard deviation at vertices, in ValueUnit, of white noise of the data, in array units.
 double NoiseAtVertices(const ModelInputs& inputs, double noiseLevel);
 
+/// One column of the data, or all of them.
+PointData DataOfColumns(const PointData& data, Eigen::Index first, Eigen::Index count);
+
 /// A warning if the noise of columns that a model couples by one norm differs by more than a factor
 /// of 5, since edges of the larger ones drown those of the others. apart: the way to have them apart.
 void WarnOfUnlikeColumns(const ModelInputs& inputs, const Sentence& apart, RunResult& result);

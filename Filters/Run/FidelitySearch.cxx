@@ -26,23 +26,6 @@ namespace
 /// In first guesses of the search: keeps data to seven digits.
 constexpr double WeightWithoutNoise = 1e8;
 
-/// One column of the data, or all of them.
-PointData DataOfColumns(const PointData& data, Eigen::Index first, Eigen::Index count)
-{
-  if (count == data.Given.cols())
-  {
-    return data;
-  }
-  PointData some;
-  some.Given = data.Given.middleCols(first, count);
-  some.Start = data.Start.middleCols(first, count);
-  some.Missing = data.Missing;
-  some.Fixed = data.Fixed;
-  some.FidelityFactors = data.FidelityFactors;
-  some.Measured = data.Measured;
-  return some;
-}
-
 /// Of a component that is held: beside so large a weight, solvers would miss the others' tolerance.
 constexpr double Held = std::numeric_limits<double>::infinity();
 

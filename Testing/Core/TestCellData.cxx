@@ -579,8 +579,7 @@ TEST(CellData, ErrorsNameTheCell)
   bad.Data.FidelityFactors.OnCells = true;
   EXPECT_EQ(messageOf(bad),
     "FidelityArray is -1 at cell 8; allowed: finite numbers, 0 or more (if it stands for no value, "
-    "set "
-    "0 in its place)");
+    "set 0 in its place)");
 }
 
 } // namespace SurfaceDiffusion

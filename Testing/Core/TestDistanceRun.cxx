@@ -560,8 +560,7 @@ TEST(DistanceRun, NamesWhatIsNotAllowed)
   data.Speeds.Values[5] = -1.0;
   expect(data,
     "Speeds is -1 at point 5; allowed: finite numbers, 0 or more (if it stands for no value, set 0 "
-    "in "
-    "its place, which is a barrier, or mask it with Mask)");
+    "in its place, which is a barrier, or mask it with Mask)");
   data.Speeds.Values.clear();
   data.StartTimes.assign(static_cast<std::size_t>(s.NumberOfVertices()), Never);
   expect(data, "StartTimes is inf at point 3; allowed: finite numbers");

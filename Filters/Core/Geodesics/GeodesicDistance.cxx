@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geodesics/GeodesicDistance.h"
 
+#include "Core/Foundation/DisjointSets.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -210,17 +211,7 @@ void GeodesicDistance::FindBehind()
 
 void GeodesicDistance::FindMedia()
 {
-  this->Medium.resize(this->Shapes.size());
-  std::iota(this->Medium.begin(), this->Medium.end(), 0);
-  const auto first = [this](Index t)
-  {
-    while (this->Medium[static_cast<std::size_t>(t)] != t)
-    {
-      Index& next = this->Medium[static_cast<std::size_t>(t)];
-      t = next = this->Medium[static_cast<std::size_t>(next)];
-    }
-    return t;
-  };
+  DisjointSets media(static_cast<Index>(this->Shapes.size()));
   for (Index side = 0; side < static_cast<Index>(this->Behind.size()); ++side)
   {
     const Index behind = this->Behind[static_cast<std::size_t>(side)];
@@ -228,13 +219,10 @@ void GeodesicDistance::FindMedia()
     if (behind >= 0 &&
       std::abs(this->ShapeOf(behind / 3).EdgeLength(behind % 3) - edge) <= SmallestJump * edge)
     {
-      this->Medium[static_cast<std::size_t>(first(side / 3))] = first(behind / 3);
+      media.Join(side / 3, behind / 3);
     }
   }
-  for (std::size_t t = 0; t < this->Medium.size(); ++t)
-  {
-    this->Medium[t] = first(static_cast<Index>(t));
-  }
+  this->Medium = media.Labels();
 }
 
 /// Whether the way to an end of the side opposite a corner has a radius of the medium behind.
