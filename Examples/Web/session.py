@@ -124,6 +124,8 @@ class Page:
             asyncio.get_running_loop()
         except RuntimeError:
             return  # the server has not started; it starts the first run
+        with self.state:  # at once: the result that is there belongs to other settings
+            self.state.busy, self.state.progress = True, 0
         asyncio.ensure_future(self.run(self.request))
 
     async def run(self, request):
@@ -141,8 +143,6 @@ class Page:
                 raise Abandoned
             loop.call_soon_threadsafe(self.show_progress, request, fraction)
 
-        with self.state:
-            self.state.busy, self.state.progress = True, 0
         self.running = loop.run_in_executor(None, run_with_warnings, entry, mesh, data, values, advance)
         message, outcome = "", None
         try:
