@@ -187,7 +187,7 @@ class Surrogates(unittest.TestCase):
             self.assertEqual(found.fwhm[-1], 0.0)
 
     def test_unrelated_maps_are_found_related_as_often_as_the_level_says(self):
-        surface = sd.sphere(3, RADIUS)
+        surface = sd.sphere(2, RADIUS)
         first = sd.random_field(surface, 200, fwhm=60.0, seed=11)
         second = sd.random_field(surface, 200, fwhm=60.0, seed=12)
         hits = 0
