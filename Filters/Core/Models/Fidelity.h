@@ -19,7 +19,7 @@ enum class FidelityNorm
   L1 ///< for impulse noise
 };
 
-/// The fidelity term lambda w chi (f - u) of a diffusion equation and its energy,
+/// The fidelity term lambda w chi (f - u) of (16) to (19), and its energy,
 ///   L2: lambda/2 int w chi |u - f|^2,
 ///   L1: lambda int w chi (sqrt(|u - f|^2 + delta^2) - delta), whose term is
 ///       lambda w chi (f - u) / sqrt(|u - f|^2 + delta^2),

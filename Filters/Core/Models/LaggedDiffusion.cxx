@@ -94,6 +94,8 @@ StepReport LaggedDiffusion::Advance(const ProgressMonitor& progress)
   return report;
 }
 
+/// (11), (14) with the fidelity of (17), (19), for the change d = u_new - u:
+/// ((1 + lambda dt chi) M + dt K) d = dt (lambda chi M (f - u) - K u).
 void LaggedDiffusion::AdvanceGroup(
   const Group& group, StepReport& report, const ProgressMonitor& progress)
 {

@@ -14,9 +14,7 @@ namespace SurfaceDiffusion
 ///   c_ij = -area grad(phi_i) . D grad(phi_j)
 /// for two corners i, j of a triangle, with the linear basis functions phi. They are symmetric.
 /// Entry (t, a) of CornerWeights belongs to the edge of triangle t opposite corner a. Assembler
-/// sums them to the stiffness matrix K. The paper derives them from integrals over the boundaries
-/// of control cells: by its Theorem 1 (15) the normal integrates over the part of the boundary of
-/// C_i inside a triangle to -area grad(phi_i).
+/// sums them to the stiffness matrix K.
 
 /// Gradient of the linear function with these corner values, in the triangle's own axes.
 inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double u1, double u2)
@@ -25,7 +23,9 @@ inline Eigen::Vector2d Gradient(const TriangleMesh::Shape& s, double u0, double 
   return { x, (u2 - u0 - x * s.X) / s.Y };
 }
 
-/// The cotan weights (10): c_ij = 1/2 cot(angle at v_k), D = 1.
+/// The cotan weights (10): c_ij = 1/2 cot(angle at v_k), D = 1. The paper derives them from integrals
+/// over the boundaries of control cells: by its Theorem 1 (15) the normal integrates over the part of
+/// the boundary of C_i inside a triangle to -area grad(phi_i).
 CornerWeights CotanWeights(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
 
 /// Those of one triangle.

@@ -133,6 +133,7 @@ void HarmonicMap::Copy(const Values& from, Values& to) const
 
 // --- ExplicitReaction ---
 
+/// (20), (21): ((1 + lambda dt chi) M + dt K(g)) w = M (u + dt r u + lambda dt chi f), u_new = w / |w|.
 void HarmonicMap::ExplicitReactionStep(StepReport& report, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
