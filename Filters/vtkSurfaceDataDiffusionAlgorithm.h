@@ -19,8 +19,9 @@
  * vtkMumfordShahFilter do not depend on it, so that it is missing. If w varies, the sum of A_i u_i is
  * not conserved.
  * Factors of cells are averaged at the points if the data are on points; if they are on cells, too,
- * P f is the mean weighted by them. With AutomaticFidelity the mean square of the difference
- * from the data, in each connected component, is weighted by area and w.
+ * P f is the mean weighted by them. With AutomaticFidelity the noise has the variance s^2/w, with
+ * s = NoiseLevel or an estimate, and the mean of w times the squared difference from the data, in
+ * each connected component and weighted by area, is s^2.
  *
  * @sa vtkFVMHeatFilter vtkIntrinsicTVFilter vtkHarmonicMapFilter
  */

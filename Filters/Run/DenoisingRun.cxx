@@ -74,13 +74,22 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
          << ")";
     warnings.push_back({ text, this->SurfaceVersion });
   }
+  if (this->Found.Spikes > 0)
+  {
+    Sentence text;
+    text << this->Found.Spikes
+         << " points were far outside of their neighbours and were moved between them (to hold "
+            "points, set "
+         << Word::Array("FixedArray") << ")";
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
   if (this->Found.FarVertices > 0)
   {
     Sentence text;
     text << this->Found.FarVertices
-         << " points moved by more than 10 times the noise level, the farthest by "
+         << " points moved by more than 10 times the noise level, the farthest of all points by "
          << this->Found.MaximumDisplacement
-         << ": outliers, or points at sharpened edges or of thin triangles (to hold points, set "
+         << ": points at sharpened edges or of thin triangles (to hold points, set "
          << Word::Array("FixedArray") << ")";
     warnings.push_back({ text, this->SurfaceVersion });
   }

@@ -177,13 +177,13 @@ NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
 {
   const Assembler& assembler = *this->Inputs.Surface.SharedAssembler();
   const Points& points = this->Inputs.Surface.Points();
-  NoiseEstimate found = EstimateNoise(assembler, this->Pattern, points, this->Data, range);
+  NoiseEstimate found = EstimateNoise(assembler, this->Pattern, points, this->Data, range, true);
   const VertexRange all{ 0, this->Inputs.Surface.Mesh().NumberOfVertices() };
   if (found.IsUndetermined && range.Size() < all.Size())
   {
     if (!this->OfAll)
     {
-      this->OfAll = EstimateNoise(assembler, this->Pattern, points, this->Data, all);
+      this->OfAll = EstimateNoise(assembler, this->Pattern, points, this->Data, all, true);
     }
     found = *this->OfAll;
   }
@@ -210,7 +210,12 @@ double ColumnSearch::FindNoise(VertexRange range, Notes& notes)
       this->Inputs.Cells ? estimate.BetweenNeighbours * this->Task.CellNoiseGain : estimate.Level();
     if (!this->Inputs.Cells && !estimate.IsCorrelated() && this->Parts.empty())
     {
-      this->NoteSmoothData(noise, notes);
+      this->NoteSmoothData(this->Data.FidelityFactors.size() > 0
+          ? EstimateNoise(*this->Inputs.Surface.SharedAssembler(), this->Pattern,
+              this->Inputs.Surface.Points(), this->Data, range)
+              .BetweenNeighbours
+          : noise,
+        notes);
     }
   }
   if (noise == 0.0)

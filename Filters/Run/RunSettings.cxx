@@ -226,11 +226,13 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
                    "each connected component of the surface has a weight of its own. "
                    "FidelityWeight is ignored." },
     automatic);
-  visitor.Number({ "NoiseLevel", "values",
-                   "Standard deviation of the noise for AutomaticFidelity, in the unit of the "
-                   "data. 0: estimated from the data, for white noise (independent from point to "
-                   "point). A warning reports correlated noise, and data that are smooth between "
-                   "neighbours, as noise is that was smoothed or resampled." },
+  visitor.Number(
+    { "NoiseLevel", "values",
+      "Standard deviation of the noise for AutomaticFidelity, in the unit of the "
+      "data, where factors of the fidelity are 1. 0: estimated from the data, for white "
+      "noise (independent from point to point). A warning reports correlated noise, and data that "
+      "are smooth between "
+      "neighbours, as noise is that was smoothed or resampled." },
     noiseLevel, SettingRange::NonNegative());
 }
 

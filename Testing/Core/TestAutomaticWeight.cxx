@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -154,6 +155,43 @@ TEST(AutomaticWeight, OfAPartWithoutNoiseLeavesTheOtherAlone)
     const Index held = runOfBoth.GetBlock(0).Surface->VertexOf(i + part.NumberOfVertices());
     EXPECT_NEAR(uOfBoth(v, 0), u(run.GetBlock(0).Surface->VertexOf(i), 0), 1e-7);
     EXPECT_EQ(uOfBoth(held, 0), 5.0);
+  }
+}
+
+// Noise of .03 on one half and .3 on the other, and factors 1/s^2 of it in three units.
+TEST(AutomaticWeight, OfUnevenNoiseWithItsFactorsIsNearTheBest)
+{
+  const Testing::Surface s = Testing::Icosphere(4);
+  const std::vector<char> all(static_cast<std::size_t>(s.Vertices.rows()), 1);
+  Noisy data{ RunInput(s), Vector(s.Vertices.rows()) };
+  data.Input.Data.FidelityFactors.Values.resize(all.size());
+  for (const double unit : { 1.0, 0.3, 50.0 }) // the noise where the factor is 1
+  {
+    for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+    {
+      const double sigma = s.Vertices(i, 2) > 0.0 ? 0.03 : 0.3;
+      data.Clean[i] = std::sin(3.0 * s.Vertices(i, 0));
+      data.Input.Data.Data.Values(i, 0) =
+        data.Clean[i] + sigma * Gaussian(static_cast<Index>(i), 4);
+      data.Input.Data.FidelityFactors.Values[static_cast<std::size_t>(i)] =
+        unit * unit / (sigma * sigma);
+    }
+    HeatSettings heat;
+    heat.Mode = HeatMode::SteadyState;
+    bool warned = false;
+    double best = std::numeric_limits<double>::infinity();
+    for (double weight = 1e-4; weight < 1e2; weight *= 1.5)
+    {
+      heat.FidelityWeight = weight / (unit * unit);
+      best = std::min(best, ErrorOf(data, all, heat, warned));
+    }
+    heat.AutomaticFidelity = true;
+    const double estimated = ErrorOf(data, all, heat, warned);
+    EXPECT_FALSE(warned);
+    EXPECT_LT(estimated, 1.5 * best);
+    heat.NoiseLevel = unit;
+    EXPECT_LT(ErrorOf(data, all, heat, warned), 1.5 * best);
+    std::printf("QQ %g %g %g\n", unit, best, estimated);
   }
 }
 

@@ -3,6 +3,7 @@
 #include "Core/Geometry/SurfaceDenoising.h"
 
 #include "Core/Geometry/DenoisingScheme.h"
+#include "Core/Geometry/Spikes.h"
 #include "Core/Geometry/SurfaceParts.h"
 #include "Core/Geometry/VertexNoise.h"
 
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <tuple>
 #include <utility>
 
@@ -127,14 +129,45 @@ struct DenoisedPart
   bool IsCoarse = false; ///< its noise cannot be distinguished from its shape
   double VolumeChange = 0.0; ///< over the volume
   Points Displacements;
+  std::vector<Index> Spikes; ///< rows
 };
+
+/// Move spikes between their neighbours. Returns their rows and displacements.
+std::vector<std::pair<Index, Eigen::RowVector3d>> PlaceSpikes(const TriangleMesh& mesh,
+  SurfacePart& part, const std::vector<char>& fixed, const ParallelFor& parallel)
+{
+  std::vector<std::pair<Index, Eigen::RowVector3d>> moved;
+  for (const auto& [vertex, place] : FindSpikes(mesh, GatherVertices(mesh, part.Places), parallel))
+  {
+    const Index row = mesh.InputVertex()[vertex];
+    if (fixed.empty() || !fixed[row])
+    {
+      moved.emplace_back(row, place - part.Places.row(row));
+    }
+  }
+  for (const auto& [row, step] : moved)
+  {
+    part.Places.row(row) += step;
+  }
+  return moved;
+}
 
 /// fixed: per row of the part, may be empty. The part loses its places and faces, which the mesh
 /// has.
 DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   const DenoisingSettings& settings, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
-  const TriangleMesh mesh(part.Places, part.Faces, parallel);
+  auto shape = std::make_unique<const TriangleMesh>(part.Places, part.Faces, parallel);
+  std::vector<std::pair<Index, Eigen::RowVector3d>> spikes;
+  if (!part.IsCoarse)
+  {
+    spikes = PlaceSpikes(*shape, part, fixed, parallel);
+  }
+  if (!spikes.empty())
+  {
+    shape = std::make_unique<const TriangleMesh>(part.Places, part.Faces, parallel);
+  }
+  const TriangleMesh& mesh = *shape;
   const double unit = mesh.LengthUnit();
   const Points points = GatherVertices(mesh, part.Places) / unit;
   const Eigen::Index rows = part.Places.rows();
@@ -157,6 +190,11 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
     return result;
   }
   result.NoiseLevel = noise * unit;
+  for (const auto& [row, step] : spikes)
+  {
+    result.Displacements.row(row) = step;
+    result.Spikes.push_back(row);
+  }
   if (!isFound)
   {
     return result;
@@ -179,11 +217,14 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
     places.row(mesh.InputVertex()[i]) = unit * points.row(i);
-    result.Displacements.row(mesh.InputVertex()[i]) =
+    result.Displacements.row(mesh.InputVertex()[i]) +=
       unit * (denoised.Moved.row(i) - points.row(i));
   }
   const std::vector<double> before = VolumesOfComponents(mesh, places);
-  places += result.Displacements;
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    places.row(mesh.InputVertex()[i]) = unit * denoised.Moved.row(i);
+  }
   const std::vector<double> after = VolumesOfComponents(mesh, places);
   for (std::size_t c = 0; c < before.size(); ++c)
   {
@@ -263,6 +304,11 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
       found.MeanDisplacement += step.norm() / count;
       found.MaximumDisplacement = std::max(found.MaximumDisplacement, step.norm());
       found.FarVertices += step.norm() > FarDisplacement * level;
+    }
+    found.Spikes += static_cast<Index>(denoised.Spikes.size());
+    for (const Index row : denoised.Spikes)
+    {
+      found.FarVertices -= denoised.Displacements.row(row).norm() > FarDisplacement * level;
     }
   }
   found.NoiseLevel = settings.NoiseLevel > 0.0 ? settings.NoiseLevel : std::sqrt(variance);

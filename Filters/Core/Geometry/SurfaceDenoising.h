@@ -27,7 +27,8 @@ struct DenoisingReport
   double CorrelationLength = 0.0;
   double MeanDisplacement = 0.0; ///< of the vertices, in the unit of the points
   double MaximumDisplacement = 0.0;
-  /// The vertices whose displacement is more than 10 times the noise level of their part: outliers,
+  Index Spikes = 0; ///< see FindSpikes(); moved between their neighbours before anything else
+  /// The other vertices whose displacement is more than 10 times the noise level of their part:
   /// edges that were sharpened, or triangles so thin that their normals determine no place.
   Index FarVertices = 0;
   Index Parts = 0; ///< connected components

@@ -21,9 +21,25 @@ constexpr int FarthestRing = 8;
 constexpr double MostGrowth = 3.0;
 constexpr double SettledGrowth = 1.3; ///< at the farthest ring
 
+/// That of the residual of a fit at vertex i to noise of the variances 1/w of fidelity factors; no
+/// factors: 1.
+double DeviationOfResidual(Index i, const LinearFit& fit, const Vector& factors)
+{
+  if (factors.size() == 0)
+  {
+    return std::sqrt(1.0 + fit.Weights.squaredNorm());
+  }
+  double variance = 1.0 / factors[i];
+  for (std::size_t j = 0; j < fit.Known.size(); ++j)
+  {
+    variance += std::pow(fit.Weights[static_cast<Eigen::Index>(j)], 2) / factors[fit.Known[j]];
+  }
+  return std::sqrt(variance);
+}
+
 /// The estimate from the vertices at a distance of `edges` edges, of which there are enough around
 /// `count` vertices.
-double EstimateAt(int edges, const FitData& data, double& count)
+double EstimateAt(int edges, const FitData& data, const Vector& factors, double& count)
 {
   const Eigen::Index columns = data.Given.cols();
   Rings rings = data.MakeRings();
@@ -40,6 +56,7 @@ double EstimateAt(int edges, const FitData& data, double& count)
     const std::vector<Index>& known = fit.Known;
     const Vector& weights = fit.Weights;
     count += weights.size() > 0 ? 1.0 : 0.0;
+    const double deviation = DeviationOfResidual(i, fit, factors);
     for (Eigen::Index k = 0; k < columns && weights.size() > 0; ++k)
     {
       double residual = 0.0;
@@ -52,7 +69,7 @@ double EstimateAt(int edges, const FitData& data, double& count)
       }
       if (varies)
       {
-        deviations.Add(k, std::abs(residual) / std::sqrt(1.0 + weights.squaredNorm()));
+        deviations.Add(k, std::abs(residual) / deviation);
       }
     }
   }
@@ -122,21 +139,24 @@ NoiseEstimate EstimateNoise(
 }
 
 NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pattern,
-  const Eigen::Ref<const Points>& points, const PointData& given, VertexRange range)
+  const Eigen::Ref<const Points>& points, const PointData& given, VertexRange range,
+  bool isOfFactorOne)
 {
+  const Vector none;
+  const Vector& factors = isOfFactorOne ? given.FidelityFactors : none;
   FitData data(assembler, pattern, points, given, range);
   const bool anyKnown = !data.Missing.all();
   data.Missing = !FindVarying(data);
   NoiseEstimate estimate;
   double count = 0.0;
-  estimate.BetweenNeighbours = EstimateAt(1, data, count);
+  estimate.BetweenNeighbours = EstimateAt(1, data, factors, count);
   estimate.IsUndetermined = count == 0.0 && !(anyKnown && data.Missing.all());
   estimate.Apart = estimate.BetweenNeighbours;
   double apart = estimate.BetweenNeighbours;
   double growth = MostGrowth;
   for (int edges = 2; edges <= FarthestRing && apart > 0.0; edges *= 2)
   {
-    const double next = EstimateAt(edges, data, count);
+    const double next = EstimateAt(edges, data, factors, count);
     if (next <= 1.15 * apart)
     {
       estimate.Apart = apart;
@@ -206,11 +226,11 @@ double Discrepancy(
   double area = 0.0;
   for (Index i = range.Begin; i < range.End; ++i)
   {
-    const double weight = mesh.ControlAreas()[i] * data.FidelityFactor(i);
-    if (weight > 0.0)
+    const double factor = data.FidelityFactor(i);
+    if (factor > 0.0)
     {
-      sum += weight * (u.row(i) - data.Given.row(i)).squaredNorm();
-      area += weight;
+      sum += mesh.ControlAreas()[i] * factor * (u.row(i) - data.Given.row(i)).squaredNorm();
+      area += mesh.ControlAreas()[i];
     }
   }
   return area > 0.0 ? std::sqrt(sum / (area * static_cast<double>(u.cols()))) : 0.0;

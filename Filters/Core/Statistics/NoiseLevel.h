@@ -55,8 +55,11 @@ NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
 
 /// The same from the vertices of some connected components. pattern: that of the assembler.
+/// isOfFactorOne: the noise where the fidelity factor w is 1, if its variances are in proportion to
+/// 1/w: r_i is over sqrt(1/w_i + sum_j v_j^2/w_j).
 NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pattern,
-  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range);
+  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range,
+  bool isOfFactorOne = false);
 
 /// What EstimateNoise() finds between neighbours, on average, in noise that is known everywhere and
 /// has the same distribution but not the same correlation as white noise of deviation 1.
@@ -113,8 +116,8 @@ private:
 FidelityChoice FindFidelityByDiscrepancy(
   const std::function<double(double)>& discrepancy, double noiseLevel, double start);
 
-/// Root of the area-weighted mean of w (u - f)^2 over the known vertices and the columns, divided
-/// by that of the fidelity factors w.
+/// Root of the area-weighted mean of w (u - f)^2 over the columns and the known vertices of fidelity
+/// factors w > 0: that of noise of the variances s^2/w is s.
 double Discrepancy(const TriangleMesh& mesh, const PointData& data, const Values& u);
 double Discrepancy(
   const TriangleMesh& mesh, const PointData& data, const Values& u, VertexRange range);
