@@ -165,8 +165,26 @@ public:
   void SetTimeIntegratorToAutomatic() { this->SetTimeIntegrator(TIME_INTEGRATOR_AUTOMATIC); }
   ///@}
 
+  enum MassMatrixType
+  {
+    MASS_MATRIX_AUTOMATIC = 0,
+    MASS_MATRIX_LUMPED = 1,
+    MASS_MATRIX_MIXED = 2
+  };
+
+  ///@{
   /**
-   * In addition to the superclass: Mode TimeSteps.
+   * The mass matrix, see the class comment. Lumped is the paper's. Automatic (default): Mixed with
+   * FWHM, Lumped otherwise. No effect on a steady state.
+   */
+  SURFACEDIFFUSION_CHOICE(MassMatrix);
+  void SetMassMatrixToAutomatic() { this->SetMassMatrix(MASS_MATRIX_AUTOMATIC); }
+  void SetMassMatrixToLumped() { this->SetMassMatrix(MASS_MATRIX_LUMPED); }
+  void SetMassMatrixToMixed() { this->SetMassMatrix(MASS_MATRIX_MIXED); }
+  ///@}
+
+  /**
+   * In addition to the superclass: Mode TimeSteps, MassMatrix Lumped.
    */
   void UsePaperScheme() override;
 
