@@ -173,7 +173,7 @@ std::vector<Case> Cases()
         f->SetSolverToAutomatic();
         f->SetTimeStep(100.0);
       })),
-    MakeCase<Heat>("heat, mixed mass matrix", "fDiffused", "f", 1,
+    MakeCase<Heat>("heat, mixed mass matrix", "fDiffused", "f", 2,
       [](Heat* f)
       {
         f->SetMassMatrixToMixed();
