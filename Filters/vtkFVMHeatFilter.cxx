@@ -22,4 +22,5 @@ void vtkFVMHeatFilter::UsePaperScheme()
   this->Superclass::UsePaperScheme();
   this->SetTimeIntegratorToFirstOrder();
   this->SetModeToTimeSteps();
+  this->SetMassMatrixToLumped();
 }

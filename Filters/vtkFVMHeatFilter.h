@@ -17,7 +17,8 @@
  * component of the data diffuses independently of the others.
  *
  * Diffusion for time t is a Gaussian blur of full width at half maximum 4 sqrt(t ln 2), regardless
- * of the triangulation. The property FWHM sets that width directly.
+ * of the triangulation. The property FWHM sets that width directly, and white noise of the variance
+ * 1/A_i gets it to 5 % from 2 mean edge lengths on, to 10 % from 1.5; below that a warning comes.
  *
  * The unit of time in natural units is h^2 (h the mean edge length). Diffusivities have no unit,
  * and lambda is in 1/h^2. The semi-discrete equation is
@@ -27,6 +28,14 @@
  * with the barycentric control areas A_i (the lumped mass matrix) and the weights c_ij of (10),
  * the cotan weights, and of (13). Without fidelity, fixed or held values, the sum of A_i u_i is
  * conserved to a relative error of 1e-12.
+ *
+ * With MassMatrix Mixed, (B du/dt)_i stands on the left, where B is the mean of the lumped and of the
+ * consistent mass matrix, a sixth and a twelfth of the area of each triangle. On an even lattice of
+ * edges h, waves of the wave number k have the eigenvalue k^2 (1 - k^2 h^2/16) with the lumped one:
+ * white noise gets .74, .77, .90 and .95 of a width of 1.5, 2, 3 and 4 mean edge lengths. With the
+ * mixed one the error is of fourth order: .91, .96, 1.00 and 1.00. A single peak leaves up to 0.6 % of
+ * it below its surroundings at widths of 1.5 edges. Automatic (the default) is Mixed with FWHM, and
+ * Lumped otherwise.
  *
  * TimeIntegrator Automatic (the default) is Exponential with FWHM, and SecondOrder otherwise.
  * SecondOrder is SDIRK2 with gamma = 1 - 1/sqrt(2) (R. Alexander, SIAM
@@ -165,8 +174,26 @@ public:
   void SetTimeIntegratorToAutomatic() { this->SetTimeIntegrator(TIME_INTEGRATOR_AUTOMATIC); }
   ///@}
 
+  enum MassMatrixType
+  {
+    MASS_MATRIX_AUTOMATIC = 0,
+    MASS_MATRIX_LUMPED = 1,
+    MASS_MATRIX_MIXED = 2
+  };
+
+  ///@{
   /**
-   * In addition to the superclass: Mode TimeSteps.
+   * The mass matrix, see the class comment. Lumped is the paper's. Automatic (default): Mixed with
+   * FWHM, Lumped otherwise. No effect on a steady state.
+   */
+  SURFACEDIFFUSION_CHOICE(MassMatrix);
+  void SetMassMatrixToAutomatic() { this->SetMassMatrix(MASS_MATRIX_AUTOMATIC); }
+  void SetMassMatrixToLumped() { this->SetMassMatrix(MASS_MATRIX_LUMPED); }
+  void SetMassMatrixToMixed() { this->SetMassMatrix(MASS_MATRIX_MIXED); }
+  ///@}
+
+  /**
+   * In addition to the superclass: Mode TimeSteps, MassMatrix Lumped.
    */
   void UsePaperScheme() override;
 

@@ -70,6 +70,12 @@ void HeatSettings::Visit(SettingVisitor& visitor)
           "where triangles are much smaller than on average." } } });
   this->DataSettings::Visit(reworded);
   VisitTimeIntegrator(reworded, this->TimeIntegrator, { true, true, false, true, true });
+  visitor.Choice({ "MassMatrix", "",
+                   "The mass matrix. Lumped: the paper's; widths below five mean edge lengths fall "
+                   "short. Mixed: the mean of that and of the consistent one, with which the blur "
+                   "has the width of FWHM from 2 mean edge lengths on. Automatic: Mixed with FWHM, "
+                   "Lumped otherwise." },
+    this->MassMatrix, { "Automatic", "Lumped", "Mixed" });
   visitor.Choice({ "Mode", "",
                    "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the limit for "
                    "infinite time, in one solve. It is the harmonic function of the fixed or "
@@ -163,6 +169,7 @@ void HeatSettings::WarnOfWidth(const ModelInputs& inputs, RunResult& result) con
       << ")");
   }
   constexpr double unresolved = 0.1; // changes waves of two edges by a hundredth
+  constexpr double narrow = 1.5; // white noise is off by up to a tenth
   constexpr double flat = 2.0; // leaves a thousandth of the longest waves of a sphere
   const double h = inputs.Units.MeanEdgeLength;
   const double diagonal = DiagonalOf(inputs.Surface.Points(), inputs.Processes);
@@ -175,6 +182,12 @@ void HeatSettings::WarnOfWidth(const ModelInputs& inputs, RunResult& result) con
     result.WarnOnce(text << ", far below the mean edge length, " << h
                          << ", and values hardly change where edges are so long (its unit is that "
                             "of the coordinates)");
+  }
+  else if (edges > 0.0 && this->FWHM < narrow * h)
+  {
+    result.WarnOnce(text << ", below " << narrow << " mean edge lengths of " << h
+                         << ", and noise gets another width (refine the surface, or smooth to the "
+                            "width of the noise: smooth_to_fwhm(), --to-fwhm of the command)");
   }
   else if (edges > 0.0 && this->FWHM > flat * diagonal)
   {
@@ -241,6 +254,8 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   settings.TimeStep = timeUnits.ToCore(traits.TimeStep, traits.Time);
   settings.Fidelity = this->FidelityWeight * fidelityUnit;
   settings.TimeScheme = SchemeOf(this->TimeIntegrator, this->FWHM > 0.0);
+  settings.HasMixedMass = this->MassMatrix == SurfaceDiffusion::MassMatrix::Mixed ||
+    (this->MassMatrix == SurfaceDiffusion::MassMatrix::Automatic && this->FWHM > 0.0);
 
   const double h = inputs.Units.CoreEdgeLength();
   SolverTask task;

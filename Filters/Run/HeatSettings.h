@@ -14,11 +14,19 @@ enum class HeatMode
   SteadyState ///< the limit of infinite time, in one solve
 };
 
+enum class MassMatrix
+{
+  Automatic, ///< Mixed for a width, Lumped for time steps
+  Lumped,
+  Mixed ///< see MixedMass.h
+};
+
 /// Linear diffusion with fidelity, u_t = div(D grad u) + lambda chi (f - u): (1), (4), (16), (18).
 struct HeatSettings : DataSettings
 {
   HeatMode Mode = HeatMode::TimeSteps;
   SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Automatic;
+  SurfaceDiffusion::MassMatrix MassMatrix = SurfaceDiffusion::MassMatrix::Automatic;
   double FWHM = 0.0; ///< in coordinate units; 0: TimeStep is used
   bool AutomaticFidelity = false;
   double NoiseLevel = 0.0;

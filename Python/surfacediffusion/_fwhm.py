@@ -84,7 +84,7 @@ def estimate_fwhm(
     -metric-estimate-fwhm belong, too. Here each edge has its own length, and a variance that differs
     from place to place does not matter. As with any estimator of this kind, the width of noise whose
     correlation is not Gaussian is that of its shortest distances. Noise on vertices alone has a
-    width of half an edge, and widths below two edges are found too small, by 4 % at 1.5 edges.
+    width of half an edge.
 
     References
     ----------
@@ -323,7 +323,8 @@ def smooth_to_fwhm(
         # The time of heat's own `fwhm`, whose warnings would name a width that no caller has given.
         result: NDArray[Any] = heat(surface, maps, time_step=width * width / (16.0 * np.log(2.0)),
                                     units="Absolute", mask=mask, mask_mode="Exclude",
-                                    time_integrator="Exponential", number_of_time_steps=1, **keywords)
+                                    time_integrator="Exponential", mass_matrix="Mixed",
+                                    number_of_time_steps=1, **keywords)
         return result
 
     area = float(_Edges(surface).areas.sum())

@@ -36,9 +36,9 @@ def smooth_img(
         The region of interest, as nilearn has it: nonzero is inside. Nothing flows across its
         boundary, and outside the result is 0. For instance the cortex without the medial wall.
     number_of_time_steps : int, default 1
-        As for :func:`heat` with the time integrator "Exponential", of which one step is within 0.5 % of
-        the exact result for white noise. Values may leave the range of the data by 5e-4 of it, and by
-        more at obtuse angles of boundaries.
+        As for :func:`heat` with the time integrator "Exponential", of which one step has an error of 0.5 %
+        in time for white noise. Values may leave the range of the data by 5e-4 of it, and by more at
+        widths below 3 edges and at obtuse angles of boundaries.
     progress : bool or callable, optional
         As for :func:`heat`.
 

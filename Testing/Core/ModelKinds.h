@@ -137,6 +137,7 @@ inline std::vector<ModelKind> AllModelKinds()
       [](Heat& s)
       {
         s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential;
+        s.MassMatrix = SurfaceDiffusion::MassMatrix::Mixed;
         s.FidelityWeight = 0.5;
       }),
     MakeKind<Heat>(

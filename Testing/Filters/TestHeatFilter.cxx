@@ -33,7 +33,9 @@ TEST(HeatFilter, UsePaperSchemeSetsThePapersReadingAndNothingElse)
   filter->SetTimeStep(0.25);
   filter->SetFidelityWeight(2.0);
   filter->SetSolverToDirect();
+  filter->SetMassMatrixToMixed();
   filter->UsePaperScheme();
+  EXPECT_STREQ(filter->GetMassMatrixAsString(), "Lumped");
   EXPECT_STREQ(filter->GetTimeIntegratorAsString(), "FirstOrder");
   EXPECT_STREQ(filter->GetMaskModeAsString(), "Inpaint");
   EXPECT_FALSE(filter->GetHoldKnownValues());

@@ -54,6 +54,34 @@ def gaussian_noise(surface, fwhm, columns=60, seed=1):
     return kernel @ np.random.default_rng(seed).normal(size=(surface.n_points, columns))
 
 
+def jittered_sphere():
+    """A sphere whose points are displaced by up to a third of an edge."""
+    even = even_sphere()
+    points = even.points + 0.35 * edge_length(even) * np.random.default_rng(4).uniform(-1, 1, even.points.shape)
+    return sd.Surface(points * RADIUS / np.linalg.norm(points, axis=1)[:, None], even.triangles)
+
+
+def exact_noise(surface, fwhm, columns, seed=1):
+    """Values of white noise after the heat equation on the sphere itself, whose covariance is a sum of
+    Legendre polynomials."""
+    points = surface.points / RADIUS
+    x = np.clip(points @ points.T, -1.0, 1.0)
+    time = (fwhm / RADIUS) ** 2 / (16 * np.log(2))
+    covariance, before, polynomial = np.zeros_like(x), np.zeros_like(x), np.ones_like(x)
+    for k in range(int(6 / np.sqrt(2 * time))):
+        covariance += (2 * k + 1) * np.exp(-2 * time * k * (k + 1)) * polynomial
+        before, polynomial = polynomial, ((2 * k + 1) * x * polynomial - k * before) / (k + 1)
+    values, vectors = np.linalg.eigh(covariance)
+    noise = np.random.default_rng(seed).normal(size=(surface.n_points, columns))
+    return vectors @ (np.sqrt(np.maximum(values, 0))[:, None] * noise)
+
+
+def white_noise(surface, columns, seed=2):
+    """The variances are those of white noise, 1 over the areas of the points."""
+    noise = np.random.default_rng(seed).normal(size=(surface.n_points, columns))
+    return noise / np.sqrt(sd._fwhm._Edges(surface).areas)[:, None]
+
+
 class Estimate(unittest.TestCase):
     def assert_within(self, found, wanted, share):
         self.assertLess(abs(found / wanted - 1.0), share, f"{found} in place of {wanted}")
@@ -67,6 +95,12 @@ class Estimate(unittest.TestCase):
                     with self.subTest(edges=edges, demean=demean):
                         estimate = sd.estimate_fwhm(surface, noise, demean=demean)
                         self.assert_within(estimate.pooled, width, 0.03)
+
+    def test_width_of_the_exact_field_is_found_within_three_percent_from_one_and_a_half_edges_on(self):
+        surface = sd.sphere(3, RADIUS)
+        for edges in (1.5, 2, 3, 4):
+            width = edges * edge_length(surface)
+            self.assert_within(sd.estimate_fwhm(surface, exact_noise(surface, width, 400)).pooled, width, 0.03)
 
     def test_width_of_noise_smoothed_by_heat_is_found_within_three_percent(self):
         surface = sd.sphere(5, RADIUS)
@@ -159,6 +193,56 @@ class Estimate(unittest.TestCase):
         white = np.random.default_rng(1).normal(size=(surface.n_points, 50))
         self.assertLess(sd.estimate_fwhm(surface, white).pooled, 0.7 * edge_length(surface))
         self.assertEqual(sd.estimate_fwhm(surface, np.ones(surface.n_points)).pooled, np.inf)
+
+
+class Realised(unittest.TestCase):
+    def test_white_noise_gets_the_width_that_is_asked_for(self):
+        for surface in (even_sphere(), jittered_sphere()):
+            h = edge_length(surface)
+            noise = white_noise(surface, 60)
+            for edges, share in ((1.5, 0.1), (2, 0.05), (3, 0.05), (4, 0.05), (6, 0.05)):
+                with self.subTest(edges=edges):
+                    smooth = sd.heat(surface, noise, fwhm=edges * h, number_of_time_steps=1)
+                    found = sd.estimate_fwhm(surface, smooth).pooled / (edges * h)
+                    self.assertLess(abs(found - 1.0), share)
+                    # The deviation of the exact field is a sum of Legendre polynomials.
+                    time = (edges * h / RADIUS) ** 2 / (16 * np.log(2))
+                    degrees = np.arange(400)
+                    exact = ((2 * degrees + 1) * np.exp(-2 * time * degrees * (degrees + 1))).sum()
+                    deviation = np.sqrt((smooth**2).mean() * 4 * np.pi / exact) * RADIUS
+                    self.assertLess(abs(deviation - 1.0), 0.06 if edges < 2 else 0.03)
+
+    def test_random_fields_have_the_width_that_is_asked_for(self):
+        for surface in (even_sphere(), jittered_sphere()):
+            for edges in (2, 3, 4, 6):
+                width = edges * edge_length(surface)
+                found = sd.estimate_fwhm(surface, sd.random_field(surface, 60, fwhm=width)).pooled
+                self.assertLess(abs(found / width - 1.0), 0.06 if edges == 2 else 0.03)
+
+    def test_time_steps_keep_the_lumped_mass_matrix(self):
+        surface = jittered_sphere()
+        noise = white_noise(surface, 3)
+        width = 3 * edge_length(surface)
+        steps = {"time_step": width**2 / (16 * np.log(2)), "units": "Absolute", "number_of_time_steps": 1,
+                 "time_integrator": "Exponential"}
+        np.testing.assert_array_equal(
+            sd.heat(surface, noise, **steps), sd.heat(surface, noise, mass_matrix="Lumped", **steps))
+        for mass_matrix in ("Lumped", "Mixed"):
+            np.testing.assert_allclose(
+                sd.heat(surface, noise, mass_matrix=mass_matrix, **steps),
+                sd.heat(surface, noise, fwhm=width, number_of_time_steps=1, mass_matrix=mass_matrix),
+                rtol=0, atol=1e-12 * np.abs(noise).max())
+
+    def test_widths_below_one_and_a_half_edges_are_one_warning_with_the_next_step(self):
+        surface = even_sphere()
+        noise = white_noise(surface, 40)
+        for edges, count in ((1.45, 1), (1.0, 1), (1.55, 0)):
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always")
+                sd.heat(surface, noise, fwhm=edges * edge_length(surface))
+            self.assertEqual(len(said), count, [str(w.message) for w in said])
+            for warning in said:
+                self.assertRegex(str(warning.message), r"fwhm is .*smooth_to_fwhm\(\), --to-fwhm")
 
 
 class SmoothTo(unittest.TestCase):

@@ -173,6 +173,19 @@ std::vector<Case> Cases()
         f->SetSolverToAutomatic();
         f->SetTimeStep(100.0);
       })),
+    MakeCase<Heat>("heat, mixed mass matrix", "fDiffused", "f", 2,
+      [](Heat* f)
+      {
+        f->SetMassMatrixToMixed();
+        f->SetTimeIntegratorToExponential();
+      }),
+    MakeCase<Heat>("heat, mixed mass matrix, second order", "roughDiffused", "rough", 2,
+      [](Heat* f)
+      {
+        f->SetMassMatrixToMixed();
+        SetInputArray(f, 1, "hole");
+        SetInputArray(f, 3, "edge");
+      }),
     MakeCase<Turing>("turing", "u1", "", 20),
     MakeCase<Turing>("turing, first order", "Texture", "", 20,
       [](Turing* f)

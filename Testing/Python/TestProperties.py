@@ -68,7 +68,7 @@ DATA = dict(
     KeepCellDetail=True, AlongDiffusivity=1.0, AcrossDiffusivity=1.0, **STEPS)
 DEFAULTS = {
     "vtkFVMHeatFilter": {
-        **DATA, "TimeIntegrator": "Automatic", "Mode": "TimeSteps", "FWHM": 0.0,
+        **DATA, "TimeIntegrator": "Automatic", "MassMatrix": "Automatic", "Mode": "TimeSteps", "FWHM": 0.0,
         "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4},
     "vtkIntrinsicTVFilter": {
         **DATA, "TimeIntegrator": "FirstOrder", "FidelityWeight": 3.0, "InitialFill": "Mean", "Tolerance": 1e-3, "Mode": "TimeSteps",
@@ -141,6 +141,7 @@ WORDS = {
     "Units": ("Natural", "Absolute"), "MaskMode": ("Inpaint", "Exclude"),
     "InitialFill": ("Input", "Mean", "Noise", "Harmonic"), "Mode": ("TimeSteps", "SteadyState"),
     "TimeIntegrator": ("FirstOrder", "SecondOrder", "Implicit", "Exponential", "Automatic"),
+    "MassMatrix": ("Automatic", "Lumped", "Mixed"),
     "Solver": ("Automatic", "Direct", "ConjugateGradient", "Multigrid"),
     "OutputPrecision": ("Single", "Double", "Input"), "EdgeFunction": EDGE_FUNCTIONS,
     "AcrossEdgeFunction": ("Same", *EDGE_FUNCTIONS), "ChannelCoupling": ("PerChannel", "Joint"),

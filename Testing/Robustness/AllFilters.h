@@ -149,8 +149,13 @@ inline std::vector<FilterKind> AllFilters()
         f->SetModeToSteadyState();
         f->SetFidelityWeight(0.1);
       }),
-    MakeKind<Heat>(
-      "HeatExponential", "fDiffused", 2, [](Heat* f) { f->SetTimeIntegratorToExponential(); }),
+    MakeKind<Heat>("HeatExponential", "fDiffused", 2,
+      [](Heat* f)
+      {
+        f->SetTimeIntegratorToExponential();
+        f->SetMassMatrixToMixed();
+      }),
+    MakeKind<Heat>("HeatMixed", "fDiffused", 2, [](Heat* f) { f->SetMassMatrixToMixed(); }),
     MakeKind<Heat>("HeatAutomatic", "fDiffused", 3, [](Heat* f) { f->AutomaticFidelityOn(); }),
     MakeKind<Heat>("HeatDeblurred", "fDiffused", 1,
       [](Heat* f)

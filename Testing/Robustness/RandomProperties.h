@@ -254,6 +254,7 @@ inline List OfHeat()
   return {
     RANDOM_PROPERTY(F, Mode, dice.Flip(3)),
     RANDOM_PROPERTY(F, FWHM, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, MassMatrix, Choice(dice, 3)),
     RANDOM_PROPERTY(F, AutomaticFidelity, dice.Flip(3)),
     RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, BlurFWHM, dice.Flip(3) ? Positive(dice) : 0.0),

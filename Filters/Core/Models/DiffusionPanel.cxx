@@ -3,7 +3,9 @@
 #include "Core/Models/DiffusionPanel.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Foundation/Resize.h"
 #include "Core/Models/ExponentialSeries.h"
+#include "Core/Operators/Assembler.h"
 
 #include <cstddef>
 
@@ -33,6 +35,32 @@ void DiffusionPanel::StartSecondStage(const Values& u, double ratio, double dt)
 {
   ForColumns(this->Solution.cols(),
     [&](auto number) { this->FillSecond<decltype(number)::value>(u, ratio, dt); });
+}
+
+/// Solution is (1 + ratio) y - ratio u, and M multiplies u + ratio (y - u).
+void DiffusionPanel::AddMassOfSecondStage(
+  const SparseMatrix& difference, const Values& u, double ratio)
+{
+  if (difference.rows() == 0)
+  {
+    return;
+  }
+  const auto columns = this->Solution.cols();
+  const auto before = u.middleCols(this->FirstColumn, columns).rowwise() -
+    this->Origin.segment(this->FirstColumn, columns);
+  this->AddProduct(difference, (ratio * this->Solution + before) / (1.0 + ratio));
+}
+
+void DiffusionPanel::AddProduct(const SparseMatrix& matrix, const Values& x)
+{
+  if (matrix.rows() == 0)
+  {
+    return;
+  }
+  Resize(this->Product, x.rows(), x.cols());
+  Multiply(matrix, x, this->Product, this->Parallel);
+  ForEach(this->Parallel, static_cast<Index>(x.rows()),
+    [&](Index i) { this->RightHandSide.row(i) += this->Product.row(i); });
 }
 
 void DiffusionPanel::StartSeries()

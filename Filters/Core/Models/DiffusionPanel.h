@@ -33,6 +33,11 @@ public:
   /// fewer iterations in steps of up to 10 h^2.
   void StartSecondStage(const Values& u, double ratio, double dt);
 
+  /// Between a start of a stage or a term and its solve: RightHandSide gains what `difference` in
+  /// the place of M makes of the state in it, but not of f.
+  void AddMass(const SparseMatrix& difference) { this->AddProduct(difference, this->Solution); }
+  void AddMassOfSecondStage(const SparseMatrix& difference, const Values& u, double ratio);
+
   /// After StartStage(): the sum of an ExponentialSeries, of which the term T_0 is Solution.
   void StartSeries();
   /// Solution is Y T_(k-1): add T_k to the sum and make it Solution, and
@@ -59,6 +64,7 @@ private:
   void FillTerm(int term, double dt);
   template <int K>
   void AddShifts();
+  void AddProduct(const SparseMatrix& matrix, const Values& x);
   template <int K>
   void Store(Values& u);
   /// Call body(i, Shifts of the component of i) for every vertex i.
@@ -73,6 +79,7 @@ private:
   Eigen::RowVectorXd Origin;
   Eigen::Index FirstColumn = 0;
   Values LastTerm, TermBefore, Sum; ///< of a series
+  Values Product;
   Values Shifts; ///< of the last correction, component x column: the loop that follows adds them
 };
 

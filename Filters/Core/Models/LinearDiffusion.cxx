@@ -7,6 +7,7 @@
 #include "Core/Models/InitialState.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/DirichletEnergy.h"
+#include "Core/Operators/MixedMass.h"
 
 #include <algorithm>
 
@@ -79,8 +80,18 @@ void LinearDiffusion::Prepare(const ProgressMonitor& progress)
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     { diagonal[i] = mesh.ControlAreas()[i] * (inertia + scale * this->Fit.Weight(i)); });
-  this->System.Assemble(diagonal, scale,
-    this->Coefficients.rows() > 0 ? this->Coefficients : CotanWeights(mesh, this->Parallel));
+  const auto assemble = [&](const CornerWeights& coefficients)
+  {
+    if (this->Options.HasMixedMass && inertia > 0.0)
+    {
+      this->MassDifference = MixedMinusLumped(*this->Assembly, this->Parallel);
+      this->System.Assemble(
+        diagonal, 1.0, WithMixedMass(mesh, scale, coefficients, this->Parallel));
+      return;
+    }
+    this->System.Assemble(diagonal, scale, coefficients);
+  };
+  assemble(this->Coefficients.rows() > 0 ? this->Coefficients : CotanWeights(mesh, this->Parallel));
   if (this->Data.Fixed.any())
   {
     this->System.Constrain(this->Data.Fixed, this->Data.Start.rowwise() - this->Panel.Means());
@@ -135,6 +146,7 @@ void LinearDiffusion::StepBackwardEuler(
   Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress)
 {
   this->Panel.StartStage(this->U, first, count, 1.0, this->Options.TimeStep);
+  this->Panel.AddMass(this->MassDifference);
   this->Solve(report, progress);
 }
 
@@ -154,9 +166,12 @@ void LinearDiffusion::StepSDIRK2(
   Eigen::Index first, Eigen::Index count, StepReport& report, const ProgressMonitor& progress)
 {
   const double dt = this->Options.ImplicitStep();
+  constexpr double ratio = (1.0 - Gamma) / Gamma;
   this->Panel.StartStage(this->U, first, count, 1.0, dt);
+  this->Panel.AddMass(this->MassDifference);
   this->Solve(report, progress.Part(0.0, 0.5));
-  this->Panel.StartSecondStage(this->U, (1.0 - Gamma) / Gamma, dt);
+  this->Panel.StartSecondStage(this->U, ratio, dt);
+  this->Panel.AddMassOfSecondStage(this->MassDifference, this->U, ratio);
   this->Solve(report, progress.Part(0.5, 1.0));
 }
 
@@ -170,6 +185,7 @@ void LinearDiffusion::StepExponential(
   this->Panel.StartSeries();
   for (int k = 1; k <= last; ++k)
   {
+    this->Panel.AddMass(this->MassDifference);
     this->Solve(report, progress.Part((k - 1.0) / last, static_cast<double>(k) / last));
     this->Panel.AddTerm(k, dt);
   }

@@ -19,7 +19,8 @@ namespace SurfaceDiffusion
 ///   u_t = div(D grad u) + lambda chi (f - u)
 /// with the indicator chi of the known part of the surface; (1), (4), denoising (16), inpainting
 /// (18). In space M u' = -K u + lambda M chi (f - u) with the lumped mass matrix M and the
-/// stiffness matrix K; in time backward Euler or an SDIRK method. Fixed vertices have Dirichlet
+/// stiffness matrix K, or B u' in place of M u' with the mixed one (MixedMass); in time backward
+/// Euler, an SDIRK method or an ExponentialSeries. Fixed vertices have Dirichlet
 /// conditions, the boundary has homogeneous Neumann conditions.
 class LinearDiffusion : public StateModel
 {
@@ -37,6 +38,7 @@ public:
     double TimeStep = 1.0; ///< in LengthUnit()^2
     double Fidelity = 0.0; ///< lambda, in 1/LengthUnit()^2
     Scheme TimeScheme = Scheme::SDIRK2;
+    bool HasMixedMass = false;
     /// Up to here a residual above the tolerance of the solver is not reported as missed.
     double SufficientResidual = 0.0;
     bool SharesSolver = false; ///< with other models: each step sets its matrix
@@ -89,6 +91,7 @@ private:
   TotalCorrection Conserved;
   MeanCorrection Balanced;
   DiffusionPanel Panel;
+  SparseMatrix MassDifference; ///< B - M; no rows with the lumped mass matrix
   bool Prepared = false;
 };
 

@@ -125,7 +125,8 @@ def _surface_place(entry, part, surface, areas, width, arguments):
         excluded[entry.vertices[inside]] = False
         mask = excluded if excluded.any() else None
         return heat(solver, full, mask=mask, mask_mode="Exclude", fwhm=width,
-                    time_integrator="Exponential", number_of_time_steps=arguments.steps,
+                    time_integrator="Exponential", mass_matrix=arguments.mass_matrix.capitalize(),
+                    number_of_time_steps=arguments.steps,
                     **merging(arguments))[entry.vertices]
 
     def measure(inside):
