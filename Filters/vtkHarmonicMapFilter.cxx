@@ -5,6 +5,7 @@
 #include "Conversion/PointNormals.h"
 #include "Conversion/SurfaceReader.h"
 #include "Run/HarmonicMapSettings.h"
+#include "Run/InputSentences.h"
 #include "vtkSurfaceModelAlgorithmInternals.h"
 
 #include "vtkCellData.h"
@@ -132,12 +133,9 @@ bool vtkHarmonicMapFilter::FindFields(vtkPolyData* block, InputFields& fields, P
   }
   fields.ResultIsNormals = this->UseAsNormals && this->IsNormals(fields, block);
   const char* const name = fields.Data.Values->GetName();
-  const std::string label = std::string("InputArray \"") + (name ? name : "") + "\"";
   if (this->GetMoveVertices() && !this->IsNormals(fields, block))
   {
-    problems.push_back("MoveVertices is on but " + label +
-      " is not the surface's normals; allowed: off, or the active normals of points or cells, or "
-      "none, as InputArray");
+    problems.push_back(Say("NoNormals", name ? name : ""));
   }
   return true;
 }

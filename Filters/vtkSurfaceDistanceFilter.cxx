@@ -8,6 +8,7 @@
 #include "Conversion/SourceInput.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DistanceRun.h"
+#include "Run/InputSentences.h"
 #include "Run/OwnedSettings.h"
 
 #include "vtkObjectFactory.h"
@@ -72,8 +73,7 @@ bool vtkSurfaceDistanceFilter::FindFields(
   {
     if (array->OnCells)
     {
-      problems.push_back(
-        std::string(name) + " is a cell array; allowed: point arrays of 1 component");
+      problems.push_back(Say("CellArray", name));
     }
   }
   return fields.Data.Values || fields.Sources;

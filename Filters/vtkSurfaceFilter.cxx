@@ -12,6 +12,7 @@
 #include "Distributed/SurfacePieces.h"
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
+#include "Run/InputSentences.h"
 #include "Run/RunSettings.h"
 #include "vtkSurfaceFilterInternals.h"
 
@@ -164,21 +165,9 @@ const char* vtkSurfaceFilter::GetPropertyWord(const char* name) const
 
 void vtkSurfaceFilter::CheckSurfaceProperties(Problems& problems)
 {
-  const SettingRange seam =
-    SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: 1e-6 of the bounding box");
-  Require(seam.Contains(this->SeamTolerance), Word::Setting("SeamTolerance"), this->SeamTolerance,
-    seam.Text, problems);
-  const bool automatic = this->MayRefineAutomatically();
-  Require(
-    (automatic ? SettingRange::NonNegativeOr(RefineAutomatically, "") : SettingRange::NonNegative())
-      .Contains(this->RefineTo),
-    Word::Setting("RefineTo"), this->RefineTo,
-    automatic ? "finite numbers, 0 or more, or -1: automatic" : "finite numbers, 0 or more",
+  SurfaceDiffusion::CheckSurfaceProperties(this->SeamTolerance, this->RefineTo,
+    this->MayRefineAutomatically(), this->MaximumNumberOfTriangles, this->NumberOfThreads,
     problems);
-  Require(this->MaximumNumberOfTriangles > 0, Word::Setting("MaximumNumberOfTriangles"),
-    this->MaximumNumberOfTriangles, "integers, 1 or more", problems);
-  Require(this->NumberOfThreads >= 0, Word::Setting("NumberOfThreads"), this->NumberOfThreads,
-    "integers, 0 or more; 0: all", problems);
 }
 
 bool vtkSurfaceFilter::SolvesInPieces(const std::vector<SurfaceBlock>&, bool, double)
@@ -211,7 +200,7 @@ std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
     anyVisible = anyVisible || isVisible;
     if (polygons && !isVisible)
     {
-      hidden.Add("all polygons are hidden or ghost cells: nothing is computed", block.Name);
+      hidden.Add(Say("Hidden"), block.Name);
     }
     if (polygons || !processes.IsSerial())
     {
@@ -228,18 +217,12 @@ std::vector<vtkSurfaceFilter::SurfaceBlock> vtkSurfaceFilter::SelectSurfaces(
   const InputDescription& input = this->Private->Input;
   if (!anyPoint && !input.OtherTypes.empty())
   {
-    problems.push_back((input.IsComposite ? "the blocks are " : "the input is ") +
-      input.OtherTypes +
-      "; a surface of polygons or strips is needed (for the surface of a grid, "
-      "apply Extract Surface, which is vtkDataSetSurfaceFilter)");
-  }
-  else if (!anyPoint)
-  {
-    problems.emplace_back("the input is empty; a surface of polygons or strips is needed");
+    problems.push_back(
+      Say("NoSurface", input.IsComposite ? "the blocks are" : "the input is", input.OtherTypes));
   }
   else if (!anyPolygon)
   {
-    problems.emplace_back("the input has no polygons or strips; a surface is needed");
+    problems.push_back(Say(anyPoint ? "NoPolygons" : "Empty"));
   }
   return selected;
 }

@@ -9,6 +9,7 @@
 #include "Distributed/CellFlags.h"
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
+#include "Run/InputSentences.h"
 #include "vtkSurfaceFilterInternals.h"
 #include "vtkSurfaceModelAlgorithmInternals.h"
 
@@ -345,7 +346,7 @@ void vtkSurfaceModelAlgorithm::FindAllFields(const std::vector<SurfaceBlock>& bl
   }
   for (Sentence& warning : warnings)
   {
-    warning << " (without data, a block passes through)";
+    warning = Say("BlockPasses", warning);
   }
   const std::size_t before = problems.size();
   SettleAbsence(fields, problems, warnings);

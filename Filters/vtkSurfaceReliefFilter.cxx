@@ -5,6 +5,7 @@
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
 #include "Conversion/SurfaceRuns.h"
+#include "Run/InputSentences.h"
 #include "Run/OwnedSettings.h"
 #include "Run/ReliefRun.h"
 
@@ -103,7 +104,7 @@ bool vtkSurfaceReliefFilter::FindFields(vtkPolyData* block, InputFields& fields,
   fields.Data = inputs.Find(0, "InputArray", 1);
   if (fields.Data.OnCells)
   {
-    problems.emplace_back("InputArray is a cell array; allowed: point arrays of 1 component");
+    problems.push_back(Say("CellArray", "InputArray"));
   }
   fields.Mask = inputs.Find(1, "MaskArray", 1);
   return fields.Data.Values != nullptr;

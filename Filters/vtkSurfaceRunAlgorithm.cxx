@@ -6,6 +6,7 @@
 #include "Conversion/ResultWriter.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/BlockSentences.h"
+#include "Run/InputSentences.h"
 #include "vtkSurfaceFilterInternals.h"
 
 #include <utility>
@@ -47,7 +48,7 @@ void vtkSurfaceRunAlgorithm::ProcessSurfaces(
   this->CheckSurfaceProperties(problems);
   if (state.NeedsName && this->ResultArrayName.empty())
   {
-    problems.emplace_back("ResultArrayName is empty; allowed: any name");
+    problems.push_back(Say("NoName"));
   }
   std::vector<SurfaceBlock> surfaces;
   std::vector<InputFields> fields;

@@ -5,6 +5,7 @@
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
 #include "Run/ConvertValue.h"
+#include "Run/InputSentences.h"
 #include "Run/OwnedSettings.h"
 #include "Run/SegmentationSettings.h"
 
@@ -84,9 +85,6 @@ double vtkSurfaceSegmentationFilter::GetEffectiveMean(int region, int component)
 /// The settings check the number of means. If it is right, each region and component has one.
 void vtkSurfaceSegmentationFilter::CheckPlacesOfMeans(int components, Problems& problems) const
 {
-  const std::string regions = "1 to NumberOfRegions " + std::to_string(this->GetNumberOfRegions());
-  const std::string columns =
-    "0 to " + std::to_string(components - 1) + ", the last component of InputArray";
   const std::size_t limit = problems.size() + LargestNumberOfPlaces;
   for (const auto& [place, value] : this->Means)
   {
@@ -95,10 +93,14 @@ void vtkSurfaceSegmentationFilter::CheckPlacesOfMeans(int components, Problems& 
       return;
     }
     const auto [region, component] = place;
-    Require(region >= 1 && region <= this->GetNumberOfRegions(), "the region of a Mean", region,
-      regions, problems);
-    Require(component >= 0 && component < components, "the component of a Mean", component, columns,
-      problems);
+    if (region < 1 || region > this->GetNumberOfRegions())
+    {
+      problems.push_back(Say("Region", region, this->GetNumberOfRegions()));
+    }
+    if (component < 0 || component >= components)
+    {
+      problems.push_back(Say("Component", component, components - 1));
+    }
   }
 }
 

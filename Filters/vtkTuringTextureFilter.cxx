@@ -4,6 +4,7 @@
 
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
+#include "Run/InputSentences.h"
 #include "Run/OwnedSettings.h"
 #include "Run/TextureSettings.h"
 
@@ -47,9 +48,7 @@ double vtkTuringTextureFilter::FindRefinement(double meanEdgeLength, Sentence& e
   const double length = settings.EdgeLengthForFeatures(meanEdgeLength);
   if (length > 0.0)
   {
-    explanation << Word::Setting("FeatureSize") << " is " << size << ", only "
-                << size / meanEdgeLength << " mean edge lengths (to keep the edges, set "
-                << Word::Setting("RefineTo") << " to 0)";
+    explanation = Say("Features", size, size / meanEdgeLength);
   }
   return length;
 }
@@ -71,8 +70,7 @@ bool vtkTuringTextureFilter::FindFields(vtkPolyData* block, InputFields& fields,
   fields.Rates = rates.Values;
   if (rates.Values && !rates.OnCells)
   {
-    problems.emplace_back(
-      "DiffusionRateArray is a point array; allowed: arrays of 4 components per cell");
+    problems.push_back(Say("PointRates"));
   }
   return true; // an initial state is optional
 }

@@ -3,6 +3,7 @@
 #include "Conversion/InputArrays.h"
 
 #include "Run/BlockSentences.h"
+#include "Run/InputSentences.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
@@ -69,27 +70,14 @@ struct Choice
 };
 
 /// The sentence of an array that is not there.
-std::string DescribeAbsence(const Choice& choice, vtkPolyData* block)
+Sentence DescribeAbsence(const Choice& choice, const std::string& label, vtkPolyData* block)
 {
   const bool onPoints = choice.MayBeOnPoints();
-  const bool onCells = choice.MayBeOnCells();
-  const std::string kind = onPoints && onCells ? "point or cell" : (onCells ? "cell" : "point");
-  if (!choice.HasName())
-  {
-    return "is not set and the input has no active " + kind + " " +
-      vtkDataSetAttributes::GetAttributeTypeAsString(choice.Attribute) + "; choose a " + kind +
-      " array";
-  }
-  const std::string text = "is not among the " + kind + " arrays of the input; choose one of them";
-  if (!onCells && block->GetCellData()->HasArray(choice.Name))
-  {
-    return text + ", or association 1 for the cell array of this name";
-  }
-  if (!onPoints && block->GetPointData()->HasArray(choice.Name))
-  {
-    return text + ", or association 0 for the point array of this name";
-  }
-  return text;
+  vtkDataSetAttributes* const others =
+    block->GetAttributes(onPoints ? vtkDataObject::CELL : vtkDataObject::POINT);
+  return SayAbsent(label,
+    choice.HasName() ? "" : vtkDataSetAttributes::GetAttributeTypeAsString(choice.Attribute),
+    onPoints, choice.MayBeOnCells(), choice.HasName() && others->HasArray(choice.Name));
 }
 
 } // namespace
@@ -110,50 +98,45 @@ LocatedArray InputArrays::Find(int index, const char* property, int components) 
   {
     return {};
   }
-  const std::string label =
-    property + (choice.HasName() ? " \"" + std::string(choice.Name) + "\"" : std::string());
-  const auto report = [&](const std::string& what)
+  const std::string label = ArrayLabel(property, choice.HasName() ? choice.Name : "");
+  const auto report = [&](const Sentence& problem)
   {
-    this->Problems.push_back(label + ' ' + what);
+    this->Problems.push_back(problem);
     return LocatedArray();
   };
   if (!choice.IsKnownAssociation())
   {
-    return report("has association " + std::to_string(choice.Association) +
-      "; allowed: points (0) or cells (1)");
+    return report(Say("Association", label, choice.Association));
   }
 
   const auto [found, isOnCells] = choice.FindIn(this->Block);
   if (!found)
   {
     this->Fields.Absent.push_back(
-      { index, label, label + ' ' + DescribeAbsence(choice, this->Block) });
+      { index, label, DescribeAbsence(choice, label, this->Block).Text() });
     return {};
   }
   vtkDataArray* array = vtkDataArray::SafeDownCast(found);
   if (!array)
   {
     this->Fields.Absent.push_back(
-      { index, label, label + " is a " + found->GetClassName() + "; allowed: numeric arrays" });
+      { index, label, Say("Class", label, found->GetClassName()).Text() });
     return {};
   }
   const vtkIdType tuples =
     isOnCells ? this->Block->GetNumberOfCells() : this->Block->GetNumberOfPoints();
   if (array->GetNumberOfTuples() != tuples)
   {
-    return report("has " + std::to_string(array->GetNumberOfTuples()) + " tuples; allowed: " +
-      std::to_string(tuples) + ", one per " + (isOnCells ? "cell" : "point"));
+    return report(
+      Say("Tuples", label, array->GetNumberOfTuples(), tuples, isOnCells ? "cell" : "point"));
   }
   const int size = array->GetNumberOfComponents();
   if (components == AnyNumberOfComponents ? size < 1 : size != components)
   {
     const char* const name = array->GetName();
-    const std::string unset = choice.HasName()
-      ? std::string()
-      : "is not set, and the active array " + (name ? '"' + std::string(name) + "\" " : "");
-    return report(unset + "has " + std::to_string(size) + " components; allowed: " +
-      (components == AnyNumberOfComponents ? std::string("1 or more")
-                                           : std::to_string(components)));
+    const std::string active = label + " is not set, and the active array";
+    return report(Say("Components", choice.HasName() ? label : ArrayLabel(active, name ? name : ""),
+      size, components == AnyNumberOfComponents ? "1 or more" : std::to_string(components)));
   }
   return { array, isOnCells };
 }
@@ -194,8 +177,7 @@ void SettleAbsence(
     }
     else
     {
-      warnings.push_back(absence.Array.Label + " counts as not set on " +
-        ListBlocks(absence.Blocks) + ", without such a numeric array");
+      warnings.push_back(Say("SomeBlocks", absence.Array.Label, ListBlocks(absence.Blocks)));
     }
   }
 }

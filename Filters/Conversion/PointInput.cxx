@@ -8,6 +8,7 @@
 #include "Distributed/ProcessReduction.h"
 #include "Distributed/Processes.h"
 #include "Run/Collective.h"
+#include "Run/InputSentences.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
@@ -36,18 +37,16 @@ vtkDataArray* FindArray(
   vtkPointData* const attributes = points->GetPointData();
   vtkAbstractArray* const found =
     hasName ? attributes->GetAbstractArray(name.c_str()) : attributes->GetScalars();
-  const std::string label = property + (hasName ? " \"" + name + "\"" : std::string());
+  const std::string label = ArrayLabel(property, name);
   if (!found)
   {
-    problems.emplace_back(label +
-      (hasName ? " is not among the point arrays of the points with values; choose one of them"
-               : " is not set and the points with values have no active scalars; choose an array"));
+    problems.push_back(Say(hasName ? "NotAmongPoints" : "NoScalarsOfPoints", label));
     return nullptr;
   }
   vtkDataArray* const array = vtkDataArray::SafeDownCast(found);
   if (!array)
   {
-    problems.emplace_back(label + " is a " + found->GetClassName() + "; allowed: numeric arrays");
+    problems.push_back(Say("Class", label, found->GetClassName()));
   }
   return array;
 }
@@ -129,16 +128,12 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
   std::vector<SharedArray> arrays;
   if (!points)
   {
-    problems.emplace_back(std::string("the points with values are a ") + data->GetClassName() +
-      "; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
-      "vtkTableToPolyData)");
+    problems.push_back(Say("NoPointSet", "the points with values are", data->GetClassName()));
   }
   else if (isEmpty)
   {
-    problems.push_back("the second input, the points with values, has " +
-      (hidden.empty() ? std::string("0 points; allowed: 1 or more")
-                      : std::to_string(hidden.size()) +
-            " hidden points; allowed: 1 or more that are not hidden"));
+    problems.push_back(Say(
+      hidden.empty() ? "NoPoints" : "HiddenPoints", "the points with values", hidden.size(), ""));
   }
   // A process without points need not have the arrays of the others.
   else if (points->GetNumberOfPoints() > 0)
@@ -149,12 +144,12 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
       : FindArray(points, names.Weights, "PointWeightArray", problems);
     if (weights && weights->GetNumberOfComponents() != 1)
     {
-      problems.emplace_back("PointWeightArray has " +
-        std::to_string(weights->GetNumberOfComponents()) + " components; allowed: 1");
+      problems.push_back(
+        Say("Components", "PointWeightArray", weights->GetNumberOfComponents(), 1));
     }
     if (values && problems.size() == before)
     {
-      arrays.push_back(DescribeArray("values", values, "points"));
+      arrays.push_back(DescribeArray("values", values, false));
       const vtkIdType count = points->GetNumberOfPoints();
       samples->Name = values->GetName() ? values->GetName() : "";
       samples->Given = ReadValues(values);

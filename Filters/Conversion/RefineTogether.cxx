@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/RefineTogether.h"
 
+#include "Run/InputSentences.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -51,10 +53,7 @@ bool RefineTogether(PieceRefinement& refinement, std::vector<SurfacePiece>& piec
     const double longest = *std::max_element(all.begin(), all.end());
     if (completed && longest > 0.0)
     {
-      Sentence text("refinement stopped at edges of ");
-      text << longest << ", longer than " << asked << ", because "
-           << Word::Setting("MaximumNumberOfTriangles") << " is " << limit;
-      warnings.push_back(text);
+      warnings.push_back(Say("Stopped", longest, asked, limit));
       if (Sum(processes, static_cast<double>(pieces.size())) > 1.0)
       {
         length = longest; // in every piece, so that pieces of a surface fit
@@ -67,9 +66,7 @@ bool RefineTogether(PieceRefinement& refinement, std::vector<SurfacePiece>& piec
   }
   if (triangles > 0.0 && !reason.Words().empty())
   {
-    Sentence text("edges were bisected, to ");
-    text << static_cast<vtkIdType>(triangles) << " triangles, because " << reason;
-    warnings.push_back(text);
+    warnings.push_back(Say("Bisected", static_cast<vtkIdType>(triangles), reason));
   }
   if (!completed)
   {

@@ -6,6 +6,7 @@
 #include "Conversion/PointNormals.h"
 #include "Conversion/SMPParallelFor.h"
 #include "Conversion/TupleRange.h"
+#include "Run/InputSentences.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -342,7 +343,7 @@ void WriteCurves(
   curves->GetCellData()->AddArray(CopyToArray<vtkIntArray>("Block", 1, blocks));
 }
 
-std::string DescribeReplacement(const std::vector<std::string>& names)
+Sentence DescribeReplacement(const std::vector<std::string>& names)
 {
   std::vector<std::string> distinct = names; // blocks share their names
   std::sort(distinct.begin(), distinct.end());
@@ -352,8 +353,7 @@ std::string DescribeReplacement(const std::vector<std::string>& names)
   {
     list += (list.empty() ? "\"" : ", \"") + name + "\"";
   }
-  return "results replace arrays of the input: " + list +
-    "; to keep these, set another ResultArrayName";
+  return Say("Replaced", list);
 }
 
 void WriteHistory(const History& history, vtkTable* table)

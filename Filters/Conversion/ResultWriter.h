@@ -49,7 +49,7 @@ void WriteCurves(
   const std::vector<const OutputList*>& surfaces, const std::string& prefix, vtkPolyData* curves);
 
 /// The warning about arrays of the input that results have replaced.
-std::string DescribeReplacement(const std::vector<std::string>& names);
+Sentence DescribeReplacement(const std::vector<std::string>& names);
 
 /// The columns of the history.
 void WriteHistory(const History& history, vtkTable* table);

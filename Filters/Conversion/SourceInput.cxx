@@ -5,6 +5,7 @@
 #include "Conversion/PointInput.h"
 #include "Distributed/CellFlags.h"
 #include "Distributed/Processes.h"
+#include "Run/InputSentences.h"
 
 #include "vtkCellType.h"
 #include "vtkDataObject.h"
@@ -75,10 +76,8 @@ std::shared_ptr<const SourceShapes> ReadSources(
   vtkPointSet* const points = vtkPointSet::SafeDownCast(data);
   if (processes.Any(!points))
   {
-    problems.emplace_back(std::string("the second input, the sources, is a ") +
-      data->GetClassName() +
-      "; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
-      "vtkTableToPolyData)");
+    problems.push_back(
+      Say("NoPointSet", "the second input, the sources, is", data->GetClassName()));
     return nullptr;
   }
   auto sources = std::make_shared<SourceShapes>();
@@ -109,10 +108,8 @@ std::shared_ptr<const SourceShapes> ReadSources(
   const std::vector<char>& hidden = sources->Hidden;
   if (std::count(hidden.begin(), hidden.end(), 0) == 0)
   {
-    problems.push_back("the second input, the sources, has " +
-      (hidden.empty() ? std::string("0 points")
-                      : std::to_string(hidden.size()) + " hidden points") +
-      "; allowed: 1 or more points or lines" + (hidden.empty() ? "" : " that are not hidden"));
+    problems.push_back(Say(hidden.empty() ? "NoPoints" : "HiddenPoints", "the sources",
+      hidden.size(), " points or lines"));
     return nullptr;
   }
   for (std::size_t k = 0; k + 1 < ends.size(); k += 2)

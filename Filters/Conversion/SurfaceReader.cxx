@@ -7,6 +7,7 @@
 #include "Core/Surface/Polygons.h"
 #include "Distributed/CellFlags.h"
 #include "Distributed/ContentHash.h"
+#include "Run/InputSentences.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
@@ -159,10 +160,7 @@ private:
     {
       if (ids[i] < 0 || ids[i] >= this->Coordinates.rows())
       {
-        std::ostringstream text;
-        text << "cell " << cell << " of the input refers to point " << ids[i] << ", but there are "
-             << this->Coordinates.rows() << " points";
-        throw std::runtime_error(text.str());
+        throw InputError(Say("CellPoint", cell, ids[i], this->Coordinates.rows()));
       }
     }
   }
@@ -211,10 +209,9 @@ void RequireTuples(vtkDataArray* array, vtkIdType count, const char* what)
 {
   if (array->GetNumberOfTuples() != count)
   {
-    std::ostringstream text;
-    text << "the input's array \"" << (array->GetName() ? array->GetName() : "") << "\" has "
-         << array->GetNumberOfTuples() << " tuples; allowed: " << count << ", one per " << what;
-    throw std::runtime_error(text.str());
+    const char* const name = array->GetName();
+    throw InputError(Say("Tuples", ArrayLabel("the input's array", name ? name : ""),
+      array->GetNumberOfTuples(), count, what));
   }
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Conversion/TimeRequests.h"
 
+#include "Run/InputSentences.h"
+
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -68,11 +70,7 @@ std::vector<Sentence> DescribeUnusedTimes(vtkInformation* input)
   {
     return {};
   }
-  return { Sentence(Word::Setting("GenerateTimeSteps"))
-    << " is " << Word::Switch(true) << " and the input has times from " << times->front() << " to "
-    << times->back() << ": all results are of the input at " << times->front()
-    << "; to follow its times, set " << Word::Setting("GenerateTimeSteps") << " to "
-    << Word::Switch(false) };
+  return { Say("Times", times->front(), times->back(), times->front()) };
 }
 
 std::optional<double> FindRequestedTime(vtkInformation* request, vtkInformationVector* outputs)

@@ -4,6 +4,7 @@
 
 #include "Conversion/InputArrays.h"
 #include "Distributed/Processes.h"
+#include "Run/InputSentences.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
@@ -23,15 +24,11 @@ constexpr char End = '\0'; ///< of a text, which no name contains
 
 } // namespace
 
-SharedArray DescribeArray(
-  const std::string& key, vtkDataArray* array, const char* place, bool hasType)
+SharedArray DescribeArray(const std::string& key, vtkDataArray* array, bool onCells, bool hasType)
 {
-  const int components = array->GetNumberOfComponents();
-  const std::string name = array->GetName() ? array->GetName() : "";
   return { key,
-    "\"" + name + "\" (" + (hasType ? array->GetDataTypeAsString() + std::string(", ") : "") +
-      std::to_string(components) + (components == 1 ? " component" : " components") + ", on " +
-      place + ")" };
+    DescribeArray(array->GetName() ? array->GetName() : "",
+      hasType ? array->GetDataTypeAsString() : "", array->GetNumberOfComponents(), onCells) };
 }
 
 std::string FindDisagreement(const Processes& processes, const std::vector<SharedArray>& here)
@@ -60,8 +57,7 @@ std::string FindDisagreement(const Processes& processes, const std::vector<Share
       const auto known = descriptions.insert({ parts[0], parts[1] }).first;
       if (known->second != parts[1])
       {
-        return "the pieces of the input have different arrays, " + known->second + " and " +
-          parts[1] + "; allowed: one name, type, number of components and place in all pieces";
+        return Say("Unlike", known->second, parts[1]).Text();
       }
       parts.clear();
     }
@@ -88,7 +84,7 @@ std::string FindDisagreement(
       if (array.Values && piece.Input->GetNumberOfPoints() > 0)
       {
         arrays.push_back(DescribeArray(std::to_string(piece.Surface) + ' ' + std::to_string(i),
-          array.Values, array.OnCells ? "cells" : "points", !IsOfFlags(i)));
+          array.Values, array.OnCells, !IsOfFlags(i)));
       }
     }
   }

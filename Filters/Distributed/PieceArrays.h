@@ -26,9 +26,9 @@ constexpr bool IsOfFlags(int index)
   return index == 1 || index == 3;
 }
 
-/// place: "points" or "cells". hasType: whether others have to be of the type.
+/// hasType: whether others have to be of the type.
 SharedArray DescribeArray(
-  const std::string& key, vtkDataArray* array, const char* place, bool hasType = true);
+  const std::string& key, vtkDataArray* array, bool onCells, bool hasType = true);
 
 /// The error if two arrays of one key differ, among those of all processes; otherwise empty.
 /// Collective.

@@ -32,9 +32,7 @@ Located<std::vector<Index>> AsLabels(const Located<std::vector<double>>& numbers
 
 InputError ErrorOfFactor(const Word& name, double number, bool onCells, Eigen::Index row)
 {
-  const InputError error =
-    ErrorAt(name, Sentence("is ") << number, onCells, row, "allowed: finite numbers, 0 or more (");
-  return InputError(Sentence(error.Message()) << AboutNoValue(name.Name) << ")");
+  return ErrorAt(name, Sentence("is ") << number, onCells, row, AllowedFactors(name.Name));
 }
 
 void RequireFiniteDirections(const Points& vectors, bool onCells, const Word& name)

@@ -13,7 +13,7 @@ namespace SurfaceDiffusion
 /// The labels 1, 2, ..., or 0 for none, of numbers. Throws InputError on others.
 Located<std::vector<Index>> AsLabels(const Located<std::vector<double>>& numbers, const Word& name);
 
-/// "`name` is `number` at point `row`; allowed: finite numbers, 0 or more", with AboutNoValue().
+/// "`name` is `number` at point `row`;" and AllowedFactors().
 InputError ErrorOfFactor(const Word& name, double number, bool onCells, Eigen::Index row);
 
 /// Throws InputError on directions that are infinite. NaN is none.

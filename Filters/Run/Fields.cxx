@@ -80,8 +80,8 @@ Flags FindVerticesBetween(const Surface& surface, const Fields& fields)
 
 } // namespace
 
-InputError ErrorAt(
-  const Sentence& name, const Sentence& found, bool onCells, Eigen::Index row, const char* allowed)
+InputError ErrorAt(const Sentence& name, const Sentence& found, bool onCells, Eigen::Index row,
+  const Sentence& allowed)
 {
   const Sentence place = onCells ? Sentence(Word::Cell()) : Sentence("point");
   return InputError(

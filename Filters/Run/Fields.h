@@ -111,8 +111,8 @@ private:
 };
 
 /// "`name` `found` at point `row`; `allowed`", or at the cell if the array is on cells.
-InputError ErrorAt(
-  const Sentence& name, const Sentence& found, bool onCells, Eigen::Index row, const char* allowed);
+InputError ErrorAt(const Sentence& name, const Sentence& found, bool onCells, Eigen::Index row,
+  const Sentence& allowed);
 
 /// Throws InputError on fidelity factors that are negative or not finite.
 void CheckFidelityFactors(const Fields& fields);

@@ -52,7 +52,7 @@ void CheckSamples(const PointSamples& samples)
       !(std::isfinite(samples.Weights[i]) && samples.Weights[i] >= 0.0))
     {
       fail(Sentence(Word::Array("FidelityArray")) << " is " << samples.Weights[i], i,
-        Sentence("allowed: finite numbers, 0 or more (") << AboutNoValue("FidelityArray") << ")");
+        AllowedFactors("FidelityArray"));
     }
   }
 }

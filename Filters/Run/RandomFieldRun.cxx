@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/RandomFieldRun.h"
+#include "Run/InputSentences.h"
 #include "Run/UnlikeEdges.h"
 
 #include "Core/Operators/CotanWeights.h"
@@ -69,8 +70,7 @@ void RandomFieldRun::Update(
   const bool isGaussian = settings.Covariance == RandomFieldSettings::Kind::Gaussian;
   if (width < 2.0 * h)
   {
-    this->Unresolved << Word::Setting(isGaussian ? "FWHM" : "Range") << " is " << width
-                     << ", below two mean edges of " << h << ", which the mesh does not resolve";
+    this->Unresolved = Say("Unresolved", Word::Setting(isGaussian ? "FWHM" : "Range"), width, h);
   }
   this->IsInEdges = !((isGaussian ? settings.FWHM : settings.Range) > 0.0);
   this->UnlikeEdges = this->IsInEdges ? SentenceOfUnlikeEdges(mesh) : Sentence();

@@ -212,6 +212,11 @@ Sentence AboutNoValue(const std::string& array)
   return text << "NaN in its place" << (array == "InputArray" ? mask : Sentence());
 }
 
+Sentence AllowedFactors(const std::string& array)
+{
+  return Sentence("allowed: finite numbers, 0 or more (") << AboutNoValue(array) << ")";
+}
+
 std::vector<Sentence> AskForSentinels(const Surface& surface, const Fields& fields,
   const Reduction& processes, const Sentence& aboutData)
 {

@@ -11,6 +11,9 @@ namespace SurfaceDiffusion
 /// value, set 0 in its place".
 Sentence AboutNoValue(const std::string& array);
 
+/// "allowed: finite numbers, 0 or more", with AboutNoValue().
+Sentence AllowedFactors(const std::string& array);
+
 /// A warning for each number that programs write where they have no value, such as -9999 or the fill
 /// value of netCDF, 9.969e36, that an array of numbers has farther from all others that count than
 /// half of their range: are they values? Collective. aboutData: in place of AboutNoValue() of data.

@@ -4,6 +4,7 @@
 
 #include "Core/Surface/EdgeLengths.h"
 #include "Run/BlockSentences.h"
+#include "Run/InputSentences.h"
 #include "Run/Outputs.h"
 #include "Run/Sentinels.h"
 #include "Run/UnlikeEdges.h"
@@ -146,9 +147,7 @@ void SurfaceRun::AppendMissedResidual(double residual, std::vector<Warning>& war
   {
     Fingerprint inputs = this->SurfaceVersion;
     inputs.Add(this->FieldsVersion);
-    Sentence text("the linear solver missed its tolerance; the largest relative residual is ");
-    text << residual;
-    warnings.push_back({ text, inputs });
+    warnings.push_back({ Say("Missed", residual), inputs });
   }
 }
 

@@ -21,22 +21,16 @@ namespace SurfaceDiffusion
 namespace
 {
 
-template <typename Array>
-void AddArray(Fingerprint& fingerprint, const std::optional<Array>& array)
+void AddArray(Fingerprint& fingerprint, const InputArray& array)
 {
-  fingerprint.AddNumber(std::uint64_t{ array ? 1U : 0U });
-  if (!array)
+  fingerprint.AddNumber(std::uint64_t{ array.dtype().bits });
+  for (std::size_t axis = 0; axis < array.ndim(); ++axis)
   {
-    return;
+    fingerprint.AddNumber(static_cast<std::uint64_t>(array.shape(axis)));
   }
-  fingerprint.AddNumber(std::uint64_t{ array->dtype().bits });
-  for (std::size_t axis = 0; axis < array->ndim(); ++axis)
+  if (array.nbytes() > 0)
   {
-    fingerprint.AddNumber(static_cast<std::uint64_t>(array->shape(axis)));
-  }
-  if (array->nbytes() > 0)
-  {
-    fingerprint.AddBytes(array->data(), array->nbytes(), PythonThreads::Instance());
+    fingerprint.AddBytes(array.data(), array.nbytes(), PythonThreads::Instance());
   }
 }
 
@@ -59,28 +53,14 @@ std::vector<char> FindMissing(const InputArray& array)
   return missing;
 }
 
-std::vector<char> ReadFlags(const std::optional<FlagArray>& array)
-{
-  return array ? std::vector<char>(array->data(), array->data() + array->size())
-               : std::vector<char>();
-}
-
-std::vector<double> ReadNumbers(const std::optional<FactorArray>& array)
-{
-  return array ? std::vector<double>(array->data(), array->data() + array->size())
-               : std::vector<double>();
-}
-
-/// The rows of an array that the triangles of the surface belong to.
+/// The rows of an array on faces that the triangles of the surface belong to.
 template <typename Matrix>
-Matrix ReadOnTriangles(const InputSurface& surface, const DoubleArray& array)
+Matrix ReadOnTriangles(const InputSurface& surface, const Matrix& array)
 {
-  const auto columns = static_cast<Eigen::Index>(array.shape(1));
-  Matrix rows(surface.GetTriangles().rows(), columns);
+  Matrix rows(surface.GetTriangles().rows(), array.cols());
   for (Eigen::Index t = 0; t < rows.rows(); ++t)
   {
-    const double* const from = array.data() + surface.FaceOf(static_cast<Index>(t)) * columns;
-    rows.row(t) = Eigen::Map<const Eigen::RowVectorXd>(from, columns);
+    rows.row(t) = array.row(static_cast<Eigen::Index>(surface.FaceOf(static_cast<Index>(t))));
   }
   return rows;
 }
@@ -96,6 +76,12 @@ void RequireIndices(std::size_t count, const char* what)
 }
 
 } // namespace
+
+std::vector<char> ReadFlags(const std::optional<FlagArray>& array)
+{
+  return array ? std::vector<char>(array->data(), array->data() + array->size())
+               : std::vector<char>();
+}
 
 InputSurface::InputSurface(
   const DoubleArray& points, const LongArray& connectivity, const LongArray& offsets)
@@ -184,90 +170,127 @@ void InputSurface::SetAreaFactors(const FactorArray& factors)
     this->AreaFactors.data(), sizeof(double) * this->AreaFactors.size(), PythonThreads::Instance());
 }
 
-SurfaceArrays InputSurface::Read(const Located<std::optional<FlagArray>>& excluded) const
+SurfaceArrays InputSurface::Read(const Located<std::vector<char>>& excluded) const
 {
   SurfaceArrays arrays{ this->Coordinates, this->TriangleRows, this->Hidden, this->AreaFactors };
   if (!excluded.OnCells)
   {
-    const std::vector<char> masked = ReadFlags(excluded.Values);
-    arrays.Excluded.resize(std::max(masked.size(), this->Hidden.size()), 0);
-    for (std::size_t i = 0; i < masked.size(); ++i)
+    arrays.Excluded.resize(std::max(excluded.Values.size(), this->Hidden.size()), 0);
+    for (std::size_t i = 0; i < arrays.Excluded.size(); ++i)
     {
-      arrays.Excluded[i] = arrays.Excluded[i] != 0 || masked[i] != 0;
+      arrays.Excluded[i] = IsSet(this->Hidden, i) || IsSet(excluded.Values, i);
     }
     return arrays;
   }
-  for (Index t = 0; excluded.Values && t < static_cast<Index>(this->TriangleRows.rows()); ++t)
+  for (Index t = 0; t < static_cast<Index>(this->TriangleRows.rows()); ++t)
   {
-    arrays.ExcludedTriangles.push_back(excluded.Values->data()[this->FaceOf(t)] != 0);
+    arrays.ExcludedTriangles.push_back(IsSet(excluded.Values, this->FaceOf(t)));
   }
   return arrays;
 }
 
-Fingerprint InputSurface::Version(const Located<std::optional<FlagArray>>& excluded) const
+Fingerprint InputSurface::Version(const Located<std::vector<char>>& excluded) const
 {
   Fingerprint version = this->Contents;
-  AddArray(version, excluded.Values);
+  version.AddBytes(excluded.Values.data(), excluded.Values.size(), PythonThreads::Instance());
   version.AddNumber(std::uint64_t{ excluded.OnCells ? 1U : 0U });
   return version;
 }
 
-FieldSummary InputFields::Summarize() const
+void PythonFields::Set(
+  const std::string& kind, InputArray array, bool onFaces, const std::string& name)
+{
+  this->Arrays.insert_or_assign(kind, Given{ std::move(array), onFaces, name });
+}
+
+const InputArray* PythonFields::Find(const char* kind) const
+{
+  const auto found = this->Arrays.find(kind);
+  return found == this->Arrays.end() ? nullptr : &found->second.Array;
+}
+
+bool PythonFields::IsOnFaces(const char* kind) const
+{
+  const auto found = this->Arrays.find(kind);
+  return found != this->Arrays.end() && found->second.OnFaces;
+}
+
+template <typename To, typename T>
+Located<std::vector<To>> PythonFields::Read(const char* kind) const
+{
+  const InputArray* const array = this->Find(kind);
+  if (!array)
+  {
+    return {};
+  }
+  if (array->dtype() != nb::dtype<T>())
+  {
+    throw nb::type_error((std::string(kind) + " has another type of elements").c_str());
+  }
+  const T* const data = static_cast<const T*>(array->data());
+  return { { data, data + array->size() }, this->IsOnFaces(kind) };
+}
+
+FieldSummary PythonFields::Summarize() const
 {
   FieldSummary summary;
-  summary.Data = this->Data.Values.has_value();
-  summary.DataComponents = this->Components;
-  if (this->Samples)
-  {
-    summary.Data = true;
-    summary.DataComponents = static_cast<int>(this->Samples->Given.cols());
-  }
+  summary.Data = this->Data() || this->Samples;
+  summary.DataComponents =
+    this->Samples ? static_cast<int>(this->Samples->Given.cols()) : this->Components;
   summary.DataName = this->DataWord();
   summary.Sources = this->Sources != nullptr;
-  summary.Speeds = this->Speeds.Values.has_value();
+  summary.Speeds = this->Find("speeds") != nullptr;
   summary.StartTimes =
-    this->StartTimes.has_value() || (this->Sources && !this->Sources->StartTimes.empty());
-  summary.Directions = this->Directions.Values.has_value();
-  summary.Fixed = this->Fixed.Values.has_value();
-  summary.Rates = this->Rates.has_value();
+    this->Find("start_times") || (this->Sources && !this->Sources->StartTimes.empty());
+  summary.Directions = this->Find("directions") != nullptr;
+  summary.Fixed = this->Find("fixed") != nullptr;
+  summary.Rates = this->Find("rates") != nullptr;
   summary.DataAreTerms = this->DataAreTerms;
   return summary;
 }
 
-Word InputFields::NamedArray(const char* kind, const std::string& name)
+Word PythonFields::WordOf(const char* kind, const char* property) const
 {
-  return Word::Array(kind, name.empty() ? "" : " \"" + name + "\"");
+  const auto found = this->Arrays.find(kind);
+  const std::string name = found == this->Arrays.end() ? "" : found->second.Name;
+  return Word::Array(property, name.empty() ? "" : " \"" + name + "\"");
 }
 
-Word InputFields::DataWord() const
+Word PythonFields::DataWord() const
 {
-  return NamedArray(this->DataAreTerms ? "DataTermArray" : "InputArray", this->Name);
+  return this->WordOf("data", this->DataAreTerms ? "DataTermArray" : "InputArray");
 }
 
-Fields InputFields::Read() const
+Values PythonFields::ReadData(Eigen::Index first, Eigen::Index count) const
+{
+  const InputArray& data = *this->Data();
+  Values values(static_cast<Eigen::Index>(data.shape(0)), count);
+  const auto stride = static_cast<Eigen::Index>(data.shape(1));
+  VisitElements(data,
+    [&](const auto* from)
+    {
+      ForEach(PythonThreads::Instance(), static_cast<Index>(values.rows()),
+        [&](Index i)
+        {
+          for (Eigen::Index k = 0; k < count; ++k)
+          {
+            values(i, k) = static_cast<double>(from[i * stride + first + k]);
+          }
+        });
+    });
+  return values;
+}
+
+Fields PythonFields::Read() const
 {
   Fields fields;
-  fields.Data.OnCells = this->Data.OnCells;
-  if (this->Data.Values)
+  if (const InputArray* const data = this->Data())
   {
     fields.DataName = this->DataWord();
     fields.DataAreTerms = this->DataAreTerms;
-    fields.DataAreBytes = this->Data.Values->dtype() == nb::dtype<std::uint8_t>();
-    Values& values = fields.Data.Values;
-    values.resize(static_cast<Eigen::Index>(this->Data.Values->shape(0)), this->Components);
-    const auto stride = static_cast<Eigen::Index>(this->Data.Values->shape(1));
-    VisitElements(*this->Data.Values,
-      [&](const auto* from)
-      {
-        ForEach(PythonThreads::Instance(), static_cast<Index>(values.rows()),
-          [&](Index i)
-          {
-            for (Eigen::Index k = 0; k < values.cols(); ++k)
-            {
-              values(i, k) = static_cast<double>(from[i * stride + this->FirstColumn + k]);
-            }
-          });
-      });
+    fields.DataAreBytes = data->dtype() == nb::dtype<std::uint8_t>();
+    fields.Data.OnCells = this->IsOnFaces("data");
+    fields.Data.Values = this->ReadData(this->FirstColumn, this->Components);
   }
   if (this->Missing)
   {
@@ -277,24 +300,18 @@ Fields InputFields::Read() const
   }
   fields.Samples = this->Samples;
   fields.Sources = this->Sources;
-  fields.Speeds = { ReadNumbers(this->Speeds.Values), this->Speeds.OnCells };
-  fields.StartTimes = ReadNumbers(this->StartTimes);
-  if (this->Ids)
+  fields.Speeds = this->Read<double>("speeds");
+  fields.StartTimes = this->Read<double>("start_times").Values;
+  if (this->Find("ids"))
   {
-    fields.MakeIds = [ids = *this->Ids]
-    { return std::vector<std::int64_t>(ids.data(), ids.data() + ids.size()); };
+    fields.MakeIds = [ids = this->Read<std::int64_t>("ids").Values] { return ids; };
   }
-  fields.Between = ReadFlags(this->Between);
-  if (this->GivenFaces)
-  {
-    fields.GivenCells.assign(
-      this->GivenFaces->data(), this->GivenFaces->data() + this->GivenFaces->size());
-  }
-  fields.Mask = { ReadFlags(this->Mask.Values), this->Mask.OnCells };
-  fields.Fixed = { ReadFlags(this->Fixed.Values), this->Fixed.OnCells };
-  fields.FidelityFactors.OnCells = this->FidelityFactors.OnCells;
-  fields.Seeds = AsLabels({ ReadNumbers(this->Seeds.Values), this->Seeds.OnCells },
-    NamedArray("SeedArray", this->SeedsName));
+  fields.Between = this->Read<char, std::uint8_t>("between").Values;
+  fields.GivenCells = this->Read<Index, std::int64_t>("given_faces").Values;
+  fields.Mask = this->Read<char, std::uint8_t>("mask");
+  fields.Fixed = this->Read<char, std::uint8_t>("fixed");
+  fields.Seeds = AsLabels(this->Read<double>("seeds"), this->WordOf("seeds", "SeedArray"));
+  fields.FidelityFactors = this->Read<double>("fidelity");
   if (fields.HasCells())
   {
     fields.NumberOfCells = static_cast<Index>(this->Surface->NumberOfFaces());
@@ -304,28 +321,30 @@ Fields InputFields::Read() const
       fields.Cells[t] = static_cast<Index>(this->Surface->FaceOf(static_cast<Index>(t)));
     }
   }
-  if (const auto& given = this->Directions.Values)
+  if (this->Find("directions"))
   {
-    fields.Directions = { Eigen::Map<const Points>(
-                            given->data(), static_cast<Eigen::Index>(given->shape(0)), 3),
-      this->Directions.OnCells };
+    const Located<std::vector<double>> given = this->Read<double>("directions");
+    fields.Directions = { Eigen::Map<const Points>(given.Values.data(),
+                            static_cast<Eigen::Index>(given.Values.size() / 3), 3),
+      given.OnCells };
     RequireFiniteDirections(fields.Directions.Values, fields.Directions.OnCells,
-      NamedArray("DirectionArray", this->DirectionsName));
-    if (this->Directions.OnCells)
+      this->WordOf("directions", "DirectionArray"));
+    if (given.OnCells)
     {
-      fields.Directions.Values = ReadOnTriangles<Points>(*this->Surface, *given);
+      fields.Directions.Values = ReadOnTriangles(*this->Surface, fields.Directions.Values);
     }
   }
-  if (this->Rates)
+  if (this->Find("rates"))
   {
-    fields.Rates = ReadOnTriangles<Values>(*this->Surface, *this->Rates);
+    const std::vector<double> given = this->Read<double>("rates").Values;
+    fields.Rates = ReadOnTriangles<Values>(*this->Surface,
+      Eigen::Map<const Values>(given.data(), static_cast<Eigen::Index>(given.size() / 4), 4));
     RequireRates(fields.Rates, [&](Index t) { return this->Surface->FaceOf(t); });
   }
-  fields.FidelityFactors.Values = ReadNumbers(this->FidelityFactors.Values);
   return fields;
 }
 
-void InputFields::SetSamples(const DoubleArray& places, const DoubleArray& values,
+void PythonFields::SetSamples(const DoubleArray& places, const DoubleArray& values,
   const std::optional<FactorArray>& weights, const std::string& name)
 {
   const auto count = static_cast<Eigen::Index>(values.shape(0));
@@ -341,7 +360,7 @@ void InputFields::SetSamples(const DoubleArray& places, const DoubleArray& value
   this->Samples = std::move(samples);
 }
 
-void InputFields::SetSources(const std::optional<DoubleArray>& places,
+void PythonFields::SetSources(const std::optional<DoubleArray>& places,
   const std::optional<LongArray>& segments, const std::optional<FlagArray>& hidden,
   const std::optional<LongArray>& rows, const std::optional<FactorArray>& starts)
 {
@@ -362,18 +381,21 @@ void InputFields::SetSources(const std::optional<DoubleArray>& places,
     std::vector<Index>& numbers = places ? sources->OfTriangles : sources->OfPoints;
     numbers.assign(rows->data(), rows->data() + rows->size());
   }
-  sources->StartTimes = ReadNumbers(starts);
+  if (starts)
+  {
+    sources->StartTimes.assign(starts->data(), starts->data() + starts->size());
+  }
   this->Sources = std::move(sources);
 }
 
-InputFields InputFields::Columns(int first, int count) const
+PythonFields PythonFields::Columns(int first, int count) const
 {
   static std::atomic<std::uint64_t> panels{ 0 };
   if (!this->Found)
   {
-    this->Found = std::make_shared<const std::vector<char>>(FindMissing(*this->Data.Values));
+    this->Found = std::make_shared<const std::vector<char>>(FindMissing(*this->Data()));
   }
-  InputFields panel = *this;
+  PythonFields panel = *this;
   panel.FirstColumn = first;
   panel.AllColumns = this->Components;
   panel.Components = count;
@@ -382,25 +404,19 @@ InputFields InputFields::Columns(int first, int count) const
   return panel;
 }
 
-Fingerprint InputFields::Version() const
+Fingerprint PythonFields::Version() const
 {
   Fingerprint version;
   version.AddNumber(this->PanelNumber);
-  if (this->PanelNumber == 0)
+  for (const auto& [kind, given] : this->Arrays)
   {
-    AddArray(version, this->Data.Values);
+    version.AddBytes(kind.data(), kind.size());
+    version.AddNumber(std::uint64_t{ given.OnFaces ? 1U : 0U });
+    if (this->PanelNumber == 0 || kind != "data")
+    {
+      AddArray(version, given.Array);
+    }
   }
-  AddArray(version, this->Mask.Values);
-  AddArray(version, this->Fixed.Values);
-  AddArray(version, this->Directions.Values);
-  AddArray(version, this->Rates);
-  AddArray(version, this->FidelityFactors.Values);
-  AddArray(version, this->Seeds.Values);
-  AddArray(version, this->Speeds.Values);
-  AddArray(version, this->StartTimes);
-  AddArray(version, this->Ids);
-  AddArray(version, this->Between);
-  AddArray(version, this->GivenFaces);
   const auto add = [&](const auto& numbers)
   {
     const auto count = static_cast<std::size_t>(numbers.size());
@@ -423,22 +439,13 @@ Fingerprint InputFields::Version() const
     add(this->Sources->StartTimes);
   }
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
-  for (const bool onFaces :
-    { this->Speeds.OnCells, this->Directions.OnCells, this->Data.OnCells, this->Mask.OnCells,
-      this->Fixed.OnCells, this->FidelityFactors.OnCells, this->Seeds.OnCells })
-  {
-    version.AddNumber(std::uint64_t{ onFaces ? 1U : 0U });
-  }
   return version;
 }
 
-BlockInput InputFields::Describe(bool excludes) const
+BlockInput PythonFields::Describe(bool excludes) const
 {
-  auto excluded = this->Mask;
-  if (!excludes)
-  {
-    excluded.Values.reset();
-  }
+  const auto excluded =
+    excludes ? this->Read<char, std::uint8_t>("mask") : Located<std::vector<char>>();
   BlockInput input;
   input.Name = this->Block;
   input.SurfaceVersion = this->Surface->Version(excluded);
@@ -448,12 +455,12 @@ BlockInput InputFields::Describe(bool excludes) const
   return input;
 }
 
-std::vector<const InputFields*> ListInputs(const nb::list& inputs)
+std::vector<const PythonFields*> ListInputs(const nb::list& inputs)
 {
-  std::vector<const InputFields*> list;
+  std::vector<const PythonFields*> list;
   for (const nb::handle& input : inputs)
   {
-    list.push_back(nb::cast<const InputFields*>(input));
+    list.push_back(nb::cast<const PythonFields*>(input));
   }
   return list;
 }

@@ -11,10 +11,12 @@
 #include <nanobind/ndarray.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -87,9 +89,9 @@ public:
   /// See SurfaceArrays::AreaFactors; one per point.
   void SetAreaFactors(const FactorArray& factors);
 
-  /// excluded: per point or face (cell), nonzero for those that are left out.
-  SurfaceArrays Read(const Located<std::optional<FlagArray>>& excluded) const;
-  Fingerprint Version(const Located<std::optional<FlagArray>>& excluded) const;
+  /// excluded: per point or face (cell), nonzero for those that are left out; may be empty.
+  SurfaceArrays Read(const Located<std::vector<char>>& excluded) const;
+  Fingerprint Version(const Located<std::vector<char>>& excluded) const;
 
 private:
   Points Coordinates;
@@ -101,31 +103,31 @@ private:
   Fingerprint Contents;
 };
 
+std::vector<char> ReadFlags(const std::optional<FlagArray>& array);
+
 /// References to the input arrays of a run on one surface. Sizes have been checked in Python.
-class InputFields
+class PythonFields
 {
 public:
+  PythonFields(std::shared_ptr<const InputSurface> surface, int components, bool dataAreTerms,
+    std::string block)
+    : Surface(std::move(surface))
+    , Block(std::move(block))
+    , Components(components)
+    , DataAreTerms(dataAreTerms)
+  {
+  }
+
+  /// kind: "data" (rows x columns), "directions" (rows x 3), and "rates" (faces x 4), float64 but for
+  /// the data; "mask", "fixed", and "between", uint8; "fidelity", "seeds", "speeds", and "start_times",
+  /// float64; "ids" and "given_faces", int64. name: for messages; may be empty.
+  void Set(const std::string& kind, InputArray array, bool onFaces, const std::string& name = {});
+
   std::shared_ptr<const InputSurface> Surface;
-  Located<std::optional<InputArray>> Data; ///< points or faces x components
-  int Components = 0; ///< of the data, alpha not counted
-  Located<std::optional<FlagArray>> Mask, Fixed;
-  Located<std::optional<DoubleArray>> Directions; ///< points or faces x 3
-  std::optional<DoubleArray> Rates; ///< faces x 4
-  Located<std::optional<FactorArray>> FidelityFactors;
-  Located<std::optional<FactorArray>> Seeds; ///< labels, 0 = free
-  bool DataAreTerms = false; ///< Data are the data terms of a segmentation
-
-  std::string Name, DirectionsName,
-    SeedsName; ///< of the data and so on, for messages; may be empty
-  std::string Block; ///< the name of the surface among several, likewise
-
-  std::shared_ptr<const PointSamples> Samples; ///< in place of Data
-  std::shared_ptr<const SourceShapes> Sources; ///< of distances, in place of Data
-  Located<std::optional<FactorArray>> Speeds; ///< of distances
-  std::optional<FactorArray> StartTimes; ///< of distances, per point
-  std::optional<LongArray> Ids; ///< per point, for random numbers
-  std::optional<FlagArray> Between; ///< as in Fields
-  std::optional<LongArray> GivenFaces; ///< GivenCells of Fields
+  std::string Block; ///< the name of the surface among several, for messages; may be empty
+  int Components; ///< of the data, alpha not counted
+  /// Null without data.
+  const InputArray* Data() const { return this->Find("data"); }
 
   void SetSamples(const DoubleArray& places, const DoubleArray& values,
     const std::optional<FactorArray>& weights, const std::string& name);
@@ -136,18 +138,36 @@ public:
     const std::optional<LongArray>& rows, const std::optional<FactorArray>& starts);
 
   /// The same with a panel of the data's columns, which Components counts.
-  InputFields Columns(int first, int count) const;
+  PythonFields Columns(int first, int count) const;
   FieldSummary Summarize() const;
   /// For a run, as long as this object lives. excludes: whether masked triangles are left out;
   /// otherwise the surface does not depend on the mask.
   BlockInput Describe(bool excludes) const;
   Fields Read() const;
+  /// Columns of the data.
+  Values ReadData(Eigen::Index first, Eigen::Index count) const;
   Fingerprint Version() const;
 
 private:
-  static Word NamedArray(const char* kind, const std::string& name);
+  struct Given
+  {
+    InputArray Array;
+    bool OnFaces;
+    std::string Name;
+  };
+  /// Null if it is not set.
+  const InputArray* Find(const char* kind) const;
+  bool IsOnFaces(const char* kind) const;
+  /// Empty if it is not set. T: the type of the elements.
+  template <typename To, typename T = To>
+  Located<std::vector<To>> Read(const char* kind) const;
+  Word WordOf(const char* kind, const char* property) const;
   Word DataWord() const;
 
+  bool DataAreTerms; ///< the data are the data terms of a segmentation
+  std::map<std::string, Given> Arrays; ///< by kind
+  std::shared_ptr<const PointSamples> Samples; ///< in place of data
+  std::shared_ptr<const SourceShapes> Sources; ///< of distances, in place of data
   int FirstColumn = 0;
   int AllColumns = 0; ///< 0: no panel
   std::shared_ptr<const std::vector<char>> Missing; ///< as in Fields
@@ -157,6 +177,6 @@ private:
 };
 
 /// The inputs of a run, from a list in Python.
-std::vector<const InputFields*> ListInputs(const nanobind::list& inputs);
+std::vector<const PythonFields*> ListInputs(const nanobind::list& inputs);
 
 } // namespace SurfaceDiffusion

@@ -21,25 +21,6 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// `count` columns of the data from `start` on.
-Values ReadData(const InputArray& data, Eigen::Index start, Eigen::Index count)
-{
-  const auto columns = static_cast<Eigen::Index>(data.shape(1));
-  Values given(static_cast<Eigen::Index>(data.shape(0)), count);
-  VisitElements(data,
-    [&](const auto* from)
-    {
-      for (Eigen::Index i = 0; i < given.rows(); ++i)
-      {
-        for (Eigen::Index k = 0; k < count; ++k)
-        {
-          given(i, k) = static_cast<double>(from[i * columns + start + k]);
-        }
-      }
-    });
-  return given;
-}
-
 template <typename T>
 nb::list MakeList(const std::vector<StepRecord>& records, T StepRecord::*member)
 {
@@ -47,16 +28,6 @@ nb::list MakeList(const std::vector<StepRecord>& records, T StepRecord::*member)
   for (const StepRecord& record : records)
   {
     list.append(record.*member);
-  }
-  return list;
-}
-
-nb::list MakeList(const std::vector<double>& numbers)
-{
-  nb::list list;
-  for (const double number : numbers)
-  {
-    list.append(number);
   }
   return list;
 }
@@ -86,11 +57,11 @@ void ModelRun::Update(
   const nb::list& list, const nb::dict& settings, const nb::object& progress, bool history)
 {
   const UseGuard guard(this->InUse);
-  const std::vector<const InputFields*> blocks = ListInputs(list);
+  const std::vector<const PythonFields*> blocks = ListInputs(list);
   std::shared_ptr<RunSettings> own = MakeRunSettings(this->Name);
   AssignSettings(*own, settings);
   Problems problems;
-  for (const InputFields* fields : blocks)
+  for (const PythonFields* fields : blocks)
   {
     const FieldSummary summary = fields->Summarize();
     own->Check(&summary, problems);
@@ -104,7 +75,7 @@ void ModelRun::Update(
     [&](const ProgressMonitor& monitor)
     {
       std::vector<BlockInput> inputs;
-      for (const InputFields* const fields : blocks)
+      for (const PythonFields* const fields : blocks)
       {
         inputs.push_back(fields->Describe(excludes));
       }
@@ -160,10 +131,10 @@ nb::dict ModelRun::GetHistory() const
 {
   const History history = this->Model.MakeHistory(this->Step);
   nb::dict columns;
-  columns["Time"] = MakeList(history.Time);
+  columns["Time"] = nb::cast(history.Time);
   for (std::size_t k = 0; k < history.Totals.size(); ++k)
   {
-    columns[("Total_" + std::to_string(k)).c_str()] = MakeList(history.Totals[k]);
+    columns[("Total_" + std::to_string(k)).c_str()] = nb::cast(history.Totals[k]);
   }
   columns["Energy"] = MakeList(history.Records, &StepRecord::Energy);
   columns["Iterations"] = MakeList(history.Records, &StepRecord::Iterations);
@@ -198,15 +169,14 @@ nb::list ModelRun::ListOutputs(std::size_t block) const
 }
 
 void ModelRun::Write(std::size_t block, std::size_t number, const OutputArray& output,
-  const InputFields& input, int first, bool integers) const
+  const PythonFields& input, int first, bool integers) const
 {
   const Run::Block& from = this->Model.GetBlock(block);
   OutputSource source{ *from.Surface, PythonThreads::Instance() };
-  if (input.Data.Values)
+  if (input.Data())
   {
     const Eigen::Index count = first < 0 ? input.Components : from.Path->State().cols();
-    source.ReadData = [&input, first, count]
-    { return ReadData(*input.Data.Values, std::max(first, 0), count); };
+    source.ReadData = [&input, first, count] { return input.ReadData(std::max(first, 0), count); };
     source.DataAreFloats = !integers;
     source.AsBytes = output.dtype() == nb::dtype<std::uint8_t>();
   }

@@ -24,7 +24,7 @@ public:
   ModelRun(const ModelRun&) = delete;
   ModelRun& operator=(const ModelRun&) = delete;
 
-  /// Check and take settings and inputs, a list of InputFields. history: whether the history has
+  /// Check and take settings and inputs, a list of PythonFields. history: whether the history has
   /// energy and totals. Throws InputError and nanobind::value_error.
   void Update(const nanobind::list& blocks, const nanobind::dict& settings,
     const nanobind::object& progress, bool history);
@@ -53,7 +53,7 @@ public:
   /// from which on the columns of the output are written, and no others; -1: all columns.
   /// integers: the data were integers, which what nothing determines keeps in place of NaN.
   void Write(std::size_t block, std::size_t number, const OutputArray& output,
-    const InputFields& source, int first, bool integers) const;
+    const PythonFields& source, int first, bool integers) const;
 
 private:
   std::string Name;

@@ -7,7 +7,6 @@
 #include "InputData.h"
 #include "ModelRun.h"
 #include "NewArrays.h"
-#include "PieceFunctions.h"
 #include "PythonRuns.h"
 #include "Run/RunSettings.h"
 #include "SettingsTable.h"
@@ -34,28 +33,6 @@ using namespace nanobind::literals;
 
 namespace
 {
-
-InputFields MakeFields(std::shared_ptr<const InputSurface> surface, std::optional<InputArray> data,
-  int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
-  std::optional<DoubleArray> directions, std::optional<DoubleArray> rates,
-  std::optional<FactorArray> fidelity, std::optional<FactorArray> seeds, bool dataAreTerms,
-  const std::vector<std::string>& onFaces)
-{
-  const auto isOnFaces = [&](const char* name)
-  { return std::find(onFaces.begin(), onFaces.end(), name) != onFaces.end(); };
-  InputFields fields;
-  fields.Surface = std::move(surface);
-  fields.Data = { std::move(data), isOnFaces("data") };
-  fields.Components = components;
-  fields.Mask = { std::move(mask), isOnFaces("mask") };
-  fields.Fixed = { std::move(fixed), isOnFaces("fixed") };
-  fields.Directions = { std::move(directions), isOnFaces("directions") };
-  fields.Rates = std::move(rates);
-  fields.FidelityFactors = { std::move(fidelity), isOnFaces("fidelity") };
-  fields.Seeds = { std::move(seeds), isOnFaces("seeds") };
-  fields.DataAreTerms = dataAreTerms;
-  return fields;
-}
 
 /// Of an object with SurfaceDiagnostics: the number of coincident boundary points and how far apart
 /// they are.
@@ -120,7 +97,7 @@ NB_MODULE(_core, m)
     "model"_a);
   m.def(
     "find_problems",
-    [](const std::string& model, const nb::dict& settings, const InputFields* fields)
+    [](const std::string& model, const nb::dict& settings, const PythonFields* fields)
     {
       const FieldSummary summary = fields ? fields->Summarize() : FieldSummary();
       return FindProblems(model, settings, fields ? &summary : nullptr);
@@ -151,57 +128,15 @@ NB_MODULE(_core, m)
     .def("triangles", &GetTriangles)
     .def("faces", &GetFaces);
 
-  nb::class_<InputFields>(m, "Fields")
-    .def(
-      "__init__",
-      [](InputFields* self, std::shared_ptr<InputSurface> surface, std::optional<InputArray> data,
-        int components, std::optional<FlagArray> mask, std::optional<FlagArray> fixed,
-        std::optional<DoubleArray> directions, std::optional<DoubleArray> rates,
-        std::optional<FactorArray> fidelity, std::optional<FactorArray> seeds, bool dataAreTerms,
-        const std::vector<std::string>& onFaces)
-      {
-        new (self) InputFields(MakeFields(std::move(surface), std::move(data), components,
-          std::move(mask), std::move(fixed), std::move(directions), std::move(rates),
-          std::move(fidelity), std::move(seeds), dataAreTerms, onFaces));
-      },
-      "surface"_a, "data"_a.none(), "components"_a, "mask"_a.none(), "fixed"_a.none(),
-      "directions"_a.none(), "rates"_a.none(), "fidelity"_a.none(), "seeds"_a.none(),
-      "data_are_terms"_a, "on_faces"_a)
-    .def("set_samples", &InputFields::SetSamples, "places"_a, "values"_a, "weights"_a.none(),
+  nb::class_<PythonFields>(m, "Fields")
+    .def(nb::init<std::shared_ptr<const InputSurface>, int, bool, std::string>(), "surface"_a,
+      "components"_a, "data_are_terms"_a, "block"_a = "")
+    .def("set", &PythonFields::Set, "kind"_a, "array"_a, "on_faces"_a = false, "name"_a = "")
+    .def("set_samples", &PythonFields::SetSamples, "places"_a, "values"_a, "weights"_a.none(),
       "name"_a = "")
-    .def("set_sources", &InputFields::SetSources, "places"_a.none(), "segments"_a.none(),
+    .def("set_sources", &PythonFields::SetSources, "places"_a.none(), "segments"_a.none(),
       "hidden"_a.none(), "rows"_a.none() = nb::none(), "starts"_a.none() = nb::none())
-    .def(
-      "set_speeds",
-      [](InputFields& self, const FactorArray& speeds, bool onFaces) {
-        self.Speeds = { speeds, onFaces };
-      },
-      "speeds"_a, "on_faces"_a)
-    .def(
-      "set_start_times",
-      [](InputFields& self, const FactorArray& times) { self.StartTimes = times; }, "times"_a)
-    .def(
-      "set_ids", [](InputFields& self, const LongArray& ids) { self.Ids = ids; }, "ids"_a)
-    .def(
-      "set_measured",
-      [](InputFields& self, const FlagArray& between, const LongArray& faces)
-      {
-        self.Between = between;
-        self.GivenFaces = faces;
-      },
-      "between"_a, "faces"_a)
-    .def(
-      "set_names",
-      [](InputFields& self, const std::string& data, const std::string& block,
-        const std::string& directions, const std::string& seeds)
-      {
-        self.Name = data;
-        self.Block = block;
-        self.DirectionsName = directions;
-        self.SeedsName = seeds;
-      },
-      "data"_a, "block"_a, "directions"_a, "seeds"_a)
-    .def("columns", &InputFields::Columns, "first"_a, "count"_a);
+    .def("columns", &PythonFields::Columns, "first"_a, "count"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")
     .def(nb::init<std::string>(), "model"_a)

@@ -115,7 +115,7 @@ void WriteMatrix(const Matrix& from, const OutputArray& output)
 
 } // namespace
 
-void WriteOutput(const Output& from, OutputSource& source, const InputFields& input,
+void WriteOutput(const Output& from, OutputSource& source, const PythonFields& input,
   const OutputArray& output, int first)
 {
   if (from.Lines)
@@ -142,9 +142,9 @@ void WriteOutput(const Output& from, OutputSource& source, const InputFields& in
     write([](Index, Eigen::Index) { return 0.0; });
     return;
   }
-  const auto columns = static_cast<Eigen::Index>(input.Data.Values->shape(1));
+  const auto columns = static_cast<Eigen::Index>(input.Data()->shape(1));
   const Eigen::Index start = std::max(first, 0);
-  VisitElements(*input.Data.Values,
+  VisitElements(*input.Data(),
     [&](const auto* old)
     {
       write(

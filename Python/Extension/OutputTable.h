@@ -22,7 +22,7 @@ nanobind::list ListOutputs(
 
 /// Write an output of a run on `input`. first: the column of `output` from which on the columns of
 /// the output are written, and no others; -1: all columns.
-void WriteOutput(const Output& from, OutputSource& source, const InputFields& input,
+void WriteOutput(const Output& from, OutputSource& source, const PythonFields& input,
   const OutputArray& output, int first);
 
 /// A dict of the numbers of a run on all its surfaces: each a list of rows.

@@ -83,9 +83,9 @@ void PythonRuns::Update(
   const nb::list& surfaces, const nb::dict& values, const nb::object& progress)
 {
   const UseGuard guard(this->InUse);
-  const std::vector<const InputFields*> given = ListInputs(surfaces);
+  const std::vector<const PythonFields*> given = ListInputs(surfaces);
   std::vector<FieldSummary> summaries;
-  for (const InputFields* const fields : given)
+  for (const PythonFields* const fields : given)
   {
     summaries.push_back(fields->Summarize());
   }
@@ -120,14 +120,14 @@ void PythonRuns::Update(
       }
     });
   this->BlockNames.clear();
-  for (const InputFields* const fields : given)
+  for (const PythonFields* const fields : given)
   {
     this->BlockNames.push_back(fields->Block);
   }
   this->IsComplete = true;
 }
 
-nb::tuple PythonRuns::FindEach(const InputFields& surface, const nb::dict& values,
+nb::tuple PythonRuns::FindEach(const PythonFields& surface, const nb::dict& values,
   const std::optional<LongArray>& points, double cutoff, const nb::object& progress)
 {
   const UseGuard guard(this->InUse);
@@ -209,7 +209,7 @@ nb::list PythonRuns::ListOutputs(std::size_t surface) const
 }
 
 void PythonRuns::Write(std::size_t surface, std::size_t number, const OutputArray& output,
-  const InputFields& input) const
+  const PythonFields& input) const
 {
   const SurfaceRun& run = this->RunOf(surface);
   OutputSource source{ run.GetSurface(), PythonThreads::Instance() };

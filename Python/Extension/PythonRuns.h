@@ -25,7 +25,7 @@ public:
   PythonRuns(const PythonRuns&) = delete;
   PythonRuns& operator=(const PythonRuns&) = delete;
 
-  /// Check and take settings and inputs, a list of InputFields, and compute. The mask of the inputs
+  /// Check and take settings and inputs, a list of PythonFields, and compute. The mask of the inputs
   /// is read by those that leave masked triangles out. Throws InputError and nanobind::value_error.
   void Update(const nanobind::list& surfaces, const nanobind::dict& settings,
     const nanobind::object& progress);
@@ -41,11 +41,11 @@ public:
   /// As those of ModelRun.
   nanobind::list ListOutputs(std::size_t surface) const;
   void Write(std::size_t surface, std::size_t number, const OutputArray& output,
-    const InputFields& source) const;
+    const PythonFields& source) const;
   ///@}
   /// Of distance: data, indices and indptr of the distances from each of the points, or from all: see
   /// DistanceRun::FindEach().
-  nanobind::tuple FindEach(const InputFields& surface, const nanobind::dict& settings,
+  nanobind::tuple FindEach(const PythonFields& surface, const nanobind::dict& settings,
     const std::optional<LongArray>& points, double cutoff, const nanobind::object& progress);
   /// Of relief: the rows of the triangles of a surface that the relief has turned.
   nanobind::object TurnedTriangles(std::size_t surface) const;

@@ -5,6 +5,7 @@
 #include "Core/Surface/EdgeLengths.h"
 #include "Core/Surface/EdgeRefinement.h"
 #include "InputData.h"
+#include "NewArrays.h"
 #include "PythonProgress.h"
 #include "Run/TextureRates.h"
 #include "Run/TextureSettings.h"
@@ -13,7 +14,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <string>
+#include <utility>
 #include <vector>
 
 namespace nb = nanobind;
@@ -25,21 +26,12 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// A numpy array of its own with rows x columns numbers.
-template <typename T>
-nb::object ToNumpy(const T* from, std::size_t rows, std::size_t columns)
-{
-  T* const numbers = new T[std::max<std::size_t>(1, rows * columns)];
-  const nb::capsule owner(numbers, [](void* p) noexcept { delete[] static_cast<T*>(p); });
-  std::copy(from, from + rows * columns, numbers);
-  return nb::cast(nb::ndarray<nb::numpy, T>(numbers, { rows, columns }, owner));
-}
-
 template <typename Matrix>
 nb::object ToNumpy(const Matrix& matrix)
 {
-  return ToNumpy(matrix.data(), static_cast<std::size_t>(matrix.rows()),
-    static_cast<std::size_t>(matrix.cols()));
+  return NewArray(
+    std::vector<typename Matrix::Scalar>(matrix.data(), matrix.data() + matrix.size()),
+    { static_cast<std::size_t>(matrix.rows()), static_cast<std::size_t>(matrix.cols()) });
 }
 
 nb::dict Refine(
@@ -54,12 +46,16 @@ nb::dict Refine(
     });
   std::transform(refined.InputTriangle.begin(), refined.InputTriangle.end(),
     refined.InputTriangle.begin(), [&](Index t) { return static_cast<Index>(surface.FaceOf(t)); });
+  std::vector<Index> parents;
+  for (const auto& pair : refined.Parents)
+  {
+    parents.insert(parents.end(), pair.begin(), pair.end());
+  }
   nb::dict result;
   result["points"] = ToNumpy(refined.Vertices);
   result["triangles"] = ToNumpy(refined.Faces);
-  result["faces"] = ToNumpy(refined.InputTriangle.data(), refined.InputTriangle.size(), 1);
-  const Index* const parents = refined.Parents.empty() ? nullptr : refined.Parents[0].data();
-  result["parents"] = ToNumpy(parents, refined.Parents.size(), 2);
+  result["faces"] = NewArray(std::move(refined.InputTriangle));
+  result["parents"] = NewArray(std::move(parents), { refined.Parents.size(), 2 });
   result["longest_edge"] = refined.LongestEdge;
   result["limit_reached"] = refined.LimitReached;
   return result;

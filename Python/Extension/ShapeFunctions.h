@@ -10,4 +10,7 @@ namespace SurfaceDiffusion
 /// The function of Python that bisects the edges of a surface: refine().
 void BindShapeFunctions(nanobind::module_& m);
 
+/// Those of blocks and pieces: match_points(), number_places(), and what is said about them.
+void BindPieceFunctions(nanobind::module_& m);
+
 } // namespace SurfaceDiffusion

@@ -30,8 +30,8 @@ SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      this->Built = std::make_unique<const Surface>(
-        surface->Read({ mask, maskOnFaces }), options, PythonThreads::Instance(), monitor);
+      this->Built = std::make_unique<const Surface>(surface->Read({ ReadFlags(mask), maskOnFaces }),
+        options, PythonThreads::Instance(), monitor);
     });
 }
 

@@ -64,7 +64,8 @@ SurfaceOperators::SurfaceOperators(std::shared_ptr<const InputSurface> surface,
     [&](const ProgressMonitor& monitor)
     {
       this->Built = std::make_unique<const SurfaceDiffusion::Surface>(
-        this->Input->Read({ mask, maskOnFaces }), options, PythonThreads::Instance(), monitor);
+        this->Input->Read({ ReadFlags(mask), maskOnFaces }), options, PythonThreads::Instance(),
+        monitor);
     });
 }
 

@@ -295,7 +295,7 @@ def _make_input(surface: Surface, *, mask: Any, roi: Any, speed: Any, directions
     inputs = Input(surface, mask=left_out(mask, roi, surface), directions=directions)
     if speed is not None:
         on_faces = find_place("speed", speed, (surface.n_points, surface.n_faces), "number", False)
-        inputs.core.set_speeds(as_factors("speed", speed), on_faces)
+        inputs.core.set("speeds", as_factors("speed", speed), on_faces)
     return inputs
 
 

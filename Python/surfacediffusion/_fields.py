@@ -428,12 +428,12 @@ def warn_of_edges(name: str, length: float, fields: Any) -> None:
         raise ValueError(f"{name} is {length:g}; allowed: {1e-6 * h:g} to {1e6 * h:g}, a millionth to a "
                          "million of the mean length of edges")
     if length < 2.0 * h:
-        warn([f"{name} is {length:g}, below two mean edges of {h:g}, which the mesh does not resolve"])
+        warn([spell("random_field", _core.say("Unresolved", name, length, h), {})])
 
 
 def warn_of_solves(residual: float) -> None:
     if residual > 0.0:
-        warn([f"the linear solver missed its tolerance; the largest relative residual is {residual:g}"])
+        warn([spell("random_field", _core.say("Missed", residual), {})])
 
 
 def _as_count(name: str, value: Any, smallest: int) -> int:

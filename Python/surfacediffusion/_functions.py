@@ -25,7 +25,7 @@ from ._result import (
 from ._run import (
     Input, Progress, ProgressReporter, Runner, States, find_result_type, take_old_switch, warn,
 )
-from ._settings import settings_of, shorten, spell_documentation
+from ._settings import settings_of, spell_documentation
 from ._surface import SurfaceLike, as_numbers, as_surface, left_out, place, require_shape
 
 __all__ = [
@@ -755,9 +755,6 @@ def interpolate(
     (True, 60)
     """
     surface = as_surface(surface)
-    if properties.get("exact") and properties.get("smoothing"):
-        raise ValueError(f"smoothing is {shorten(properties['smoothing'])} and exact is True; allowed: one of "
-                         "them")
     refined = properties.pop("_refined", None)
     mask = as_mask(mask, roi, surface, properties)
     if points is None:

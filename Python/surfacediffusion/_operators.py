@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._functions import SHARED
-from ._run import Progress, ProgressReporter, check_parts, warn_of_seams
+from ._run import Progress, ProgressReporter, check_parts, in_words, warn_of_seams
 from ._settings import as_integer, as_switch
 from ._surface import Surface, SurfaceLike, as_numbers, as_surface, find_mask, left_out, require_shape
 
@@ -252,16 +252,14 @@ def import_sparse(function: str) -> Any:
 def _make_operators(surface: Surface, mask: Any, roi: Any, intrinsic_delaunay: bool = False,
                     join_short_edges: bool = False) -> Any:
     flags, on_faces = find_mask(left_out(mask, roi, surface), (surface.n_points, surface.n_faces))
-    return _core.Operators(surface._core, flags, on_faces, intrinsic_delaunay, join_short_edges,
-                           None)
+    return in_words("heat", {}, _core.Operators, surface._core, flags, on_faces, intrinsic_delaunay,
+                    join_short_edges, None)
 
 
 def _as_delaunay(surface: Surface, intrinsic_delaunay: Any, tensors: Any) -> bool:
     if as_switch("intrinsic_delaunay", intrinsic_delaunay) and tensors is not None:
         raise ValueError("intrinsic_delaunay is True, and diffusivity is given for the faces, "
                          "which are not its triangles; allowed: one of them")
-    if intrinsic_delaunay and surface.areas is not None:
-        raise ValueError("intrinsic_delaunay is True; allowed: False on surfaces with given areas")
     return bool(intrinsic_delaunay)
 
 

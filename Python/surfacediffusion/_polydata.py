@@ -17,6 +17,7 @@ from vtkmodules.vtkCommonCore import (
 )
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSetAttributes, vtkPolyData
 
+from . import _core
 from ._models import Output
 from ._refinement import interpolate_points
 from ._surface import sum_vectors, unit_normals
@@ -28,6 +29,16 @@ _HIDDEN_POINT = 2  #: the bit of points
 
 class SurfaceError(Exception):
     """An error that the filter reports."""
+
+
+def spell(words: list[Any]) -> str:
+    """A sentence of the numerics in the words of VTK and ParaView."""
+    return "".join(word[1] for word in words)
+
+
+def say(name: str, *parts: Any) -> str:
+    """The sentence of this name in the table of Filters/Run/InputSentences.cxx."""
+    return spell(_core.say(name, *parts))
 
 
 # Arrays ----------------------------------------------------------------------------------------
@@ -102,8 +113,8 @@ def cell_flags(data: Any, of_piece: bool = False) -> NDArray[np.uint8] | None:
     if of_piece and given is not None and given.GetNumberOfTuples() != count:
         given = None
     if given is not None and given.GetNumberOfTuples() != count:
-        raise SurfaceError(f"the input's array \"{given.GetName()}\" has {given.GetNumberOfTuples()} "
-                           f"tuples; allowed: {count}, one per cell")
+        raise SurfaceError(say("Tuples", f"the input's array \"{given.GetName()}\"", given.GetNumberOfTuples(),
+                               count, "cell"))
     hidden = hidden_points(data)
     if given is None and hidden is None:
         return None
@@ -144,8 +155,7 @@ class Cells:
         outside = (self.corners < 0) | (self.corners >= points)
         if outside.any():
             at = int(np.argmax(outside))
-            raise SurfaceError(f"cell {self.first + self.owners[at]} of the input refers to point "
-                               f"{self.corners[at]}, but there are {points} points")
+            raise SurfaceError(say("CellPoint", self.first + self.owners[at], self.corners[at], points))
 
     def without_strips(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
         """The corners of the polygons and of the triangles of strips, where each begins, and its cell."""
@@ -229,24 +239,24 @@ def refined_polydata(
     polygons.SetData(make_array("", 3 * np.arange(len(triangles) + 1)), make_array("", triangles.ravel()))
     surface.SetPolys(polygons)
     surface.GetFieldData().ShallowCopy(given.GetFieldData())
-    _copy_arrays(given.GetPointData(), surface.GetPointData(), given.GetNumberOfPoints(),
-                 lambda values, name: interpolate_points(values, parents, rules.get(name or "")),
-                 parents.min(axis=1))
+    copy_arrays(given.GetPointData(), surface.GetPointData(), given.GetNumberOfPoints(),
+                lambda values, name: interpolate_points(values, parents, rules.get(name or "")),
+                parents.min(axis=1), keeps=True)
     others = given.GetNumberOfVerts() + given.GetNumberOfLines()
     ids = np.concatenate([np.arange(others), cells]).astype(np.int64)
-    _copy_arrays(given.GetCellData(), surface.GetCellData(), given.GetNumberOfCells(),
-                 lambda values, _: values[ids], ids)
+    copy_arrays(given.GetCellData(), surface.GetCellData(), given.GetNumberOfCells(),
+                lambda values, _: values[ids], ids)
     surface.GetCellData().AddArray(make_array("vtkOriginalCellIds", ids, vtkIdTypeArray))
     return surface
 
 
-def _copy_arrays(
+def copy_arrays(
     given: Any, made: Any, count: int, make: Callable[[NDArray[Any], str | None], NDArray[Any]],
-    rows: NDArray[Any]
+    rows: NDArray[Any], keeps: bool = False
 ) -> None:
     """Add the arrays of `given` with a tuple for each of `count` points or cells, but global ids, and keep
     their roles. make: the values from those of an array of a name. rows: of arrays that are no numbers, the
-    tuples to copy; those of points come after all that there are."""
+    tuples to copy. keeps: all tuples come first."""
     for number in range(given.GetNumberOfArrays()):
         array, role = given.GetAbstractArray(number), given.IsArrayAnAttribute(number)
         if role == vtkDataSetAttributes.GLOBALIDS or array.GetNumberOfTuples() != count:
@@ -255,7 +265,7 @@ def _copy_arrays(
         if isinstance(array, vtkDataArray):
             new.DeepCopy(numpy_to_vtk(make(to_numpy(array), array.GetName())))
         else:
-            _copy_tuples(array, new, rows, keeps=given.IsA("vtkPointData"))
+            _copy_tuples(array, new, rows, keeps)
         new.SetName(array.GetName())
         copy_component_names(array, new)
         added = made.AddArray(new)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._run import Progress, ProgressReporter, warn
-from ._settings import as_integer, as_number, shorten
+from ._settings import as_integer, as_number, shorten, spell
 from ._surface import (
     Surface, SurfaceLike, as_numbers, as_outside, as_surface, known_place, place, require_shape,
 )
@@ -160,14 +160,17 @@ def _refine(surface: Surface, length: float, limit: Any, progress: Progress = Fa
             surface._refined.clear()
             surface._refined[key] = RefinedSurface(
                 surface if stays else Surface(found["points"], found["triangles"]),
-                np.arange(surface.n_faces, dtype=np.int32) if stays else found["faces"][:, 0],
+                np.arange(surface.n_faces, dtype=np.int32) if stays else found["faces"],
                 found["parents"], found["longest_edge"], found["limit_reached"])
         refined: RefinedSurface = surface._refined[key]
         reporter.finish_part()
     if refined.limit_reached:
-        warn([f"refinement stopped at edges of {refined.longest_edge:.6g}, longer than {length:.6g}, "
-              f"because maximum_number_of_triangles is {limit}"])
+        warn([_say("Stopped", refined.longest_edge, length, limit)])
     return refined
+
+
+def _say(name: str, *parts: Any) -> str:
+    return spell("turing_texture", _core.say(name, *parts), {})
 
 
 def mean_edge_length(surfaces: Sequence[Any]) -> float:
@@ -202,8 +205,8 @@ def refine_as_asked(
     if not triangles:
         return None
     if automatic:
-        warn([f"edges were bisected, to {triangles} triangles, because feature_size is {feature_size:g}, "
-              f"only {feature_size / mean:g} mean edge lengths (to keep the edges, set refine_to to 0)"])
+        size = float(feature_size)
+        warn([_say("Bisected", triangles, _say("Features", size, size / mean))])
     return refined
 
 

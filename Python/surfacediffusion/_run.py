@@ -156,17 +156,15 @@ class Given:
     sizes: dict[str, int]
 
 
-def make_core(
-    surface: Any, arrays: Mapping[str, tuple[Any, bool]], data_are_terms: bool = False
-) -> Any:
-    """The arrays of a surface of the library as it takes them. arrays: by name, None or an array, and whether
-    it is on faces."""
-    data, *others = [arrays.get(name, (None, False))[0] for name in (
-        "data", "mask", "fixed", "directions", "rates", "fidelity", "seeds")]
-    on_faces = [name for name, (array, at_faces) in arrays.items() if array is not None and at_faces]
-    components = 0 if data is None else data_components(data)
-    arguments: list[Any] = [surface, data, components, *others, data_are_terms, on_faces]
-    return _core.Fields(*arguments)
+def make_core(surface: Any, arrays: Mapping[str, Any], data_are_terms: bool = False, block: str = "") -> Any:
+    """The arrays of a surface of the library as it takes them. arrays: by kind, None or an array, whether it
+    is on faces and, for messages, its name. block: the name of the surface."""
+    data = arrays.get("data", (None,))[0]
+    core = _core.Fields(surface, 0 if data is None else data_components(data), data_are_terms, block)
+    for kind, (array, *place) in arrays.items():
+        if array is not None:
+            core.set(kind, array, *place)
+    return core
 
 
 class Input(Given):
@@ -207,13 +205,14 @@ class Input(Given):
                 ("fidelity", fidelity, as_factors, "number"), ("seeds", seeds, as_factors, "label")):
             if array is not None:
                 arrays[name] = convert(name, array), find_place(name, array, (n, m), what, data_on_faces)
+        if refined is not None:
+            between = np.arange(n) >= n - len(refined.parents)
+            arrays["between"] = between.astype(np.uint8), False
+            arrays["given_faces"] = refined.faces.astype(np.int64), True
         super().__init__(make_core(surface._core, arrays, data_are_terms), data, integers,
                          {"points": n, "faces": m})
         if samples is not None:
             self.core.set_samples(*samples)
-        if refined is not None:
-            between = np.arange(n) >= n - len(refined.parents)
-            self.core.set_measured(between.astype(np.uint8), refined.faces.astype(np.int64))
 
     def write(self, run: Any, block: int, output: NDArray[Any], first: int) -> None:
         """Write the columns of the result of the data of a block, from column `first` on."""
@@ -237,7 +236,7 @@ _REPLACED = {
     "intrinsic_tv": {"time_step": ("mode",), "fidelity_weight": ("automatic_fidelity",)},
     "turing_texture": {"time_step": ("automatic_time_step",)},
     "segment": {"means": ("automatic_means",)},
-    "interpolate": {"smoothing": ("automatic_smoothing",)},
+    "interpolate": {"smoothing": ("automatic_smoothing", "exact")},
 }
 
 
@@ -251,6 +250,14 @@ def _refuse_replaced(function: str, properties: Mapping[str, Any]) -> None:
             if name in properties and acts:
                 raise ValueError(f"{name} is {shorten(properties[name])}, but {other} is "
                                  f"{shorten(properties[other])}, which takes its place; allowed: one of them")
+
+
+def in_words(function: str, arrays: Mapping[str, str], work: Callable[..., Any], *arguments: Any) -> Any:
+    """work(*arguments), whose errors of the input are put in the words of Python."""
+    try:
+        return work(*arguments)
+    except _core.InputError as error:
+        raise ValueError(spell(function, error.words, arrays)) from None
 
 
 class Runner:
@@ -270,11 +277,8 @@ class Runner:
         self.interval = self.settings.get("OutputInterval", interval.default if interval else 1)
 
     def call(self, work: Callable[..., Any], *arguments: Any) -> Any:
-        """work(*arguments), whose errors of the input are put in the words of Python."""
-        try:
-            return work(*arguments)
-        except _core.InputError as error:
-            raise ValueError(spell(self.function, error.words, self.arrays)) from None
+        """in_words() of the function."""
+        return in_words(self.function, self.arrays, work, *arguments)
 
     def warnings(self, run: Any) -> list[str]:
         """The warnings that hold, in the words of Python."""

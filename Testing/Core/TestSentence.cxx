@@ -7,11 +7,13 @@
 #include "Run/DenoisingRun.h"
 #include "Run/ErrorCauses.h"
 #include "Run/HeatSettings.h"
+#include "Run/InputSentences.h"
 #include "Run/SegmentationSettings.h"
 #include "Run/Solve.h"
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -76,6 +78,17 @@ TEST(Sentence, OfAProblemRefersToTheSettingAndItsValues)
   EXPECT_EQ(KindsOf(problems[0]),
     (std::vector<Kind>{ Kind::Setting, Kind::Text, Kind::Choice, Kind::Text, Kind::Choice,
       Kind::Text, Kind::Setting, Kind::Text }));
+}
+
+TEST(Sentence, OfTheTableHasItsPartsAndRefersToSettings)
+{
+  const Sentence sentence = Say("Stopped", 0.5, 0.25, 7);
+  EXPECT_EQ(sentence.Text(),
+    "refinement stopped at edges of 0.5, longer than 0.25, because MaximumNumberOfTriangles is 7");
+  using Kind = Word::Kind;
+  EXPECT_EQ(KindsOf(sentence), (std::vector<Kind>{ Kind::Text, Kind::Setting, Kind::Text }));
+  EXPECT_EQ(Say("Bisected", 8, Say("Features", 2.0, 3.0)).Words()[1].Name, "FeatureSize");
+  EXPECT_THROW(Say("NoSuchSentence"), std::out_of_range);
 }
 
 TEST(Sentence, OfAFailureNamesOnlySettingsThatTheModelHas)

@@ -61,7 +61,7 @@ CASES = [
     (lambda: sd.Surface(POINTS, 7), r"faces is 7; allowed: .*"),
     (lambda: sd.Surface(POINTS, np.ma.masked_less(FACES, 1)), r"faces has masked entries; allowed: .*"),
     (lambda: sd.interpolate(BODY, Z, exact=True, smoothing=5.0),
-     r"smoothing is 5.0 and exact is True; allowed: one of them"),
+     r"smoothing is 5.0, but exact is True, which takes its place; allowed: one of them"),
     (lambda: sd.Surface(POINTS, [["a", "b", "c"]]), r"faces has elements of type <U1; allowed: .*"),
     (lambda: sd.heat(POINTS, Z), r"surface is array\(.*; allowed: a Surface, a tuple.*"),
     (lambda: sd.heat(None, Z), r"surface is None; allowed: a Surface, a tuple.*"),

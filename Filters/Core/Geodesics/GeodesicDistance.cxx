@@ -75,6 +75,7 @@ GeodesicDistance::GeodesicDistance(std::shared_ptr<const TriangleMesh> mesh, Fro
 {
   this->FindCorners();
   this->FindBehind();
+  this->FindGates();
 }
 
 /// The vertices of boundaries and barriers with an open angle above pi, and others with one above 2 pi.
@@ -110,12 +111,11 @@ void GeodesicDistance::FindCorners()
   {
     this->IsCorner[i] = angles[i] > (isOnRim[i] != 0 ? straight : saddle);
   }
-  this->FindGates(isOnRim);
 }
 
 /// Sides without another open triangle, and all sides of triangles that have a vertex twice: times at
 /// two places of one vertex say nothing of the way between them.
-void GeodesicDistance::FindGates(const std::vector<char>& isOnRim)
+void GeodesicDistance::FindGates()
 {
   const TriangleMesh& mesh = *this->Mesh;
   const Triangles& edges = mesh.TriangleEdges();
@@ -129,30 +129,10 @@ void GeodesicDistance::FindGates(const std::vector<char>& isOnRim)
   this->IsClosed.assign(static_cast<std::size_t>(sides), 0);
   for (Index side = 0; side < sides; ++side)
   {
-    Index i = mesh.OtherCorner(side, 1);
-    Index j = mesh.OtherCorner(side, 2);
-    const auto corners = [&](Index vertex)
-    {
-      return mesh.VertexCornersBegin()[static_cast<std::size_t>(vertex) + 1] -
-        mesh.VertexCornersBegin()[static_cast<std::size_t>(vertex)];
-    };
-    if (corners(j) < corners(i))
-    {
-      std::swap(i, j);
-    }
-    bool isOpen = edges.rows() == 0 || uses[static_cast<std::size_t>(edges.data()[side])] > 1;
-    if (edges.rows() == 0 && isOnRim[static_cast<std::size_t>(i)] != 0 &&
-      isOnRim[static_cast<std::size_t>(j)] != 0)
-    {
-      const auto begin = mesh.VertexCorners().begin();
-      isOpen = std::any_of(begin + mesh.VertexCornersBegin()[static_cast<std::size_t>(i)],
-        begin + mesh.VertexCornersBegin()[static_cast<std::size_t>(i) + 1],
-        [&](Index corner)
-        {
-          return corner / 3 != side / 3 && !IsBarrier(this->Shapes, corner / 3) &&
-            (mesh.OtherCorner(corner, 1) == j || mesh.OtherCorner(corner, 2) == j);
-        });
-    }
+    const Index i = mesh.OtherCorner(side, 1);
+    const Index j = mesh.OtherCorner(side, 2);
+    const bool isOpen = edges.rows() == 0 ? this->Behind[static_cast<std::size_t>(side)] >= 0
+                                          : uses[static_cast<std::size_t>(edges.data()[side])] > 1;
     const Index opposite = mesh.TriangleVertices().data()[side];
     const bool isLoop = i == j || i == opposite || j == opposite;
     this->IsClosed[static_cast<std::size_t>(side)] = isLoop ? 2 : (isOpen ? 0 : 1);
@@ -163,8 +143,9 @@ void GeodesicDistance::FindBehind()
 {
   const TriangleMesh& mesh = *this->Mesh;
   const auto lengthOf = [this](Index side) { return this->ShapeOf(side / 3).EdgeLength(side % 3); };
-  const auto vertices = this->Shapes.empty() ? 0 : mesh.NumberOfVertices();
-  this->Behind.assign(3 * this->Shapes.size(), -1);
+  const bool isNeeded = !this->Shapes.empty() || mesh.TriangleEdges().rows() == 0;
+  const auto vertices = isNeeded ? mesh.NumberOfVertices() : 0;
+  this->Behind.assign(isNeeded ? 3 * static_cast<std::size_t>(mesh.NumberOfTriangles()) : 0, -1);
   std::vector<std::pair<Index, Index>> sides; // of the edges to vertices of higher numbers
   for (Index i = 0; i < vertices; ++i)
   {
@@ -206,7 +187,10 @@ void GeodesicDistance::FindBehind()
       }
     }
   }
-  this->FindMedia();
+  if (!this->Shapes.empty())
+  {
+    this->FindMedia();
+  }
 }
 
 void GeodesicDistance::FindMedia()

@@ -118,7 +118,7 @@ private:
                                 : this->Shapes[static_cast<std::size_t>(t)];
   }
   void FindCorners();
-  void FindGates(const std::vector<char>& isOnRim);
+  void FindGates();
   void FindBehind();
   void FindMedia();
   std::vector<double> LongestEdges() const;
@@ -129,9 +129,9 @@ private:
   FrontShapes Shapes;
   std::vector<char> IsCorner; ///< per vertex
   std::vector<char> IsClosed; ///< per side 3 t + a, opposite corner a: no way comes through it
-  /// Of Shapes. Per side, this side of the other triangle where it is shortest; -1: there is none. Per
-  /// triangle, a number that is the same in triangles that give the sides between them about the same
-  /// length.
+  /// Of Shapes, or where triangles do not name their edges. Per side, this side of the other triangle
+  /// where it is shortest; -1: there is none. Of Shapes, per triangle, a number that is the same in
+  /// triangles that give the sides between them about the same length.
   std::vector<Index> Behind, Medium;
 };
 

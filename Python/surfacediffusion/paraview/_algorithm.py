@@ -16,10 +16,9 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 from .. import _core
 from .._models import Output
-from .._polydata import ABSENT, SurfaceError, cell_flags
+from .._polydata import ABSENT, SurfaceError, cell_flags, say, spell
 from .._refinement import mean_edge_length
-from ._fields import (
-    BY_INDEX, FLAGS, Choice, Fields, find_array, find_disagreement, join_sentences, read_fields)
+from ._fields import BY_INDEX, FLAGS, Choice, Fields, find_array, find_disagreement, read_fields
 from ._pieces import Stitched, scatter_results, stitch_pieces
 from ._refinement import Refinement
 from ._results import write_outputs
@@ -46,11 +45,6 @@ class _Aborted(Exception):
 def list_settings(model: str) -> dict[str, dict[str, Any]]:
     """The settings of a model, by name."""
     return {entry["name"]: entry for entry in _core.list_settings(model)}
-
-
-def spell(words: list[Any]) -> str:
-    """A sentence of the numerics in the words of VTK and ParaView."""
-    return "".join(word[1] for word in words)
 
 
 def _is_hidden(data: Any) -> bool:
@@ -268,7 +262,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         results, replaced = [], []
         for number, (block, fields) in enumerate(found):
             results.append(self.read_outputs(number, block, fields))
-            data = getattr(fields, self.NAMED_AFTER).values if self.NAMED_AFTER else None
+            data = fields[self.NAMED_AFTER].values
             replaced += write_outputs(results[-1], fields, data, block, self.own["ResultArrayName"])
         replaced += self.write_tables([block for block, _ in found], results, made)
         self._numbers = self._run.numbers()
@@ -277,8 +271,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             self.complete_pieces(surface)
         if replaced:
             names = ", ".join(f'"{name}"' for name in sorted(set(replaced)))
-            self._warnings.insert(0, f"results replace arrays of the input: {names}; to keep these, set "
-                                  "another ResultArrayName")
+            self._warnings.insert(0, say("Replaced", names))
         self._warnings += self._of_surfaces
         self._report_warnings([spell(words) for words in self._run.new_warnings()])
         self.UpdateProgress(1.0)
@@ -312,35 +305,22 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         return []
 
     def _check_own(self) -> list[str]:
-        own, problems = self.own, []
-        seam = own["SeamTolerance"]
-        if not (0.0 <= seam < float("inf") or seam == -1.0):
-            problems.append(f"SeamTolerance is {seam:g}; allowed: finite numbers, 0 or more, or -1: 1e-6 of "
-                            "the bounding box")
-        length = own["RefineTo"]
-        if not (0.0 <= length < float("inf") or (self.MAY_REFINE_AUTOMATICALLY and length == -1.0)):
-            also = ", or -1: automatic" if self.MAY_REFINE_AUTOMATICALLY else ""
-            problems.append(f"RefineTo is {length:g}; allowed: finite numbers, 0 or more{also}")
-        for name, lowest, allowed in (("MaximumNumberOfTriangles", 1, "integers, 1 or more"),
-                                      ("NumberOfThreads", 0, "integers, 0 or more; 0: all")):
-            if own[name] < lowest:
-                problems.append(f"{name} is {own[name]}; allowed: {allowed}")
-        return problems
+        own = self.own
+        return [spell(words) for words in _core.check_surface_properties(
+            own["SeamTolerance"], own["RefineTo"], self.MAY_REFINE_AUTOMATICALLY,
+            own["MaximumNumberOfTriangles"], own["NumberOfThreads"])]
 
     def _select(self, blocks: list[Block], parts: Parts, problems: list[str]) -> list[Block]:
         """Return the blocks with polygons."""
         with_points = [block for block in blocks if block.input.GetNumberOfPoints() > 0]
         selected = [block for block in with_points if _has_polygons(block)]
         if not with_points and parts.other_types:
-            problems.append(("the blocks are " if parts.is_composite else "the input is ") + parts.other_types
-                            + "; a surface of polygons or strips is needed (for the surface of a grid, apply "
-                            "Extract Surface, which is vtkDataSetSurfaceFilter)")
-        elif not with_points:
-            problems.append("the input is empty; a surface of polygons or strips is needed")
+            problems.append(say("NoSurface", "the blocks are" if parts.is_composite else "the input is",
+                                parts.other_types))
         elif not selected:
-            problems.append("the input has no polygons or strips; a surface is needed")
-        self._of_surfaces += join_sentences(
-            [("all polygons are hidden or ghost cells: nothing is computed", block.name)
+            problems.append(say("NoPolygons" if with_points else "Empty"))
+        self._of_surfaces += _core.join_sentences(
+            [(say("Hidden"), block.name)
              for block in selected if _is_hidden(block.input)], len(selected))
         return selected
 
@@ -375,12 +355,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
                  if k in self.choices and (name := self.choices[k].name) is not None}
         refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others, rules)
         if refinement.longest > 0.0:
-            self._of_surfaces.append(
-                f"refinement stopped at edges of {refinement.longest:g}, longer than {length:g}, because "
-                f"MaximumNumberOfTriangles is {limit}")
+            self._of_surfaces.append(say("Stopped", refinement.longest, length, limit))
         if refinement.triangles and reason:
-            self._of_surfaces.append(
-                f"edges were bisected, to {refinement.triangles} triangles, because {reason}")
+            self._of_surfaces.append(say("Bisected", refinement.triangles, reason))
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
         """Return the blocks that take part, with their arrays. Append problems."""
@@ -389,8 +366,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     def find_arrays(self, block: Block, fields: Fields, indices: Iterable[int]) -> None:
         for index in indices:
             choice = self.choices.get(index, Choice())
-            setattr(fields, BY_INDEX[index],
-                    find_array(choice, index, *self.ARRAYS[index], block.input, fields))
+            fields.arrays[BY_INDEX[index]] = find_array(choice, index, *self.ARRAYS[index], block.input, fields)
 
     def check(self, found: list[tuple[Block, Fields]], problems: list[str]) -> None:
         """Append the problems of the settings with the arrays of each block."""
@@ -400,7 +376,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
             read_fields(fields, block)
             sentences += [(spell(words), block.name) for words in
                           _core.find_problems(self.MODEL, self.settings, fields.given.core)]
-        problems += join_sentences(sentences, len(found))
+        problems += _core.join_sentences(sentences, len(found))
 
     # Reports -----------------------------------------------------------------------------------
 

@@ -5,20 +5,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Callable
 
 import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_FLOAT, vtkDataArray
 from vtkmodules.vtkCommonDataModel import vtkCellTypes, vtkDataObject, vtkDataSetAttributes, vtkPointSet
 
-from .._polydata import SurfaceError, hidden_points, places_of, to_numpy
+from .. import _core
+from .._polydata import SurfaceError, hidden_points, places_of, say, to_numpy
 from .._run import Given, make_core
 from .._surface import data_components
 from ._surfaces import BETWEEN, GIVEN_CELL, Block
 
-#: The attribute of Fields that has the array of an index; 7 has terms of data in place of data.
-BY_INDEX = ("data", "mask", "direction", "fixed", "rates", "fidelity", "seeds", "data", "speeds",
+#: What the array of an index is for the extension; 7 has terms of data in place of data.
+BY_INDEX = ("data", "mask", "directions", "fixed", "rates", "fidelity", "seeds", "data", "speeds",
             "start_times")
 FLAGS = (1, 3)  #: the indices of arrays of flags, whose type has no meaning
 POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
@@ -58,20 +59,16 @@ class Array:
     values: Any = None
     on_cells: bool = False
 
+    @property
+    def name(self) -> str:
+        return "" if self.values is None else self.values.GetName() or ""
+
 
 @dataclass
 class Fields:
     """The input arrays of a filter on one block, and the problems with them."""
 
-    data: Array = field(default_factory=Array)
-    mask: Array = field(default_factory=Array)
-    direction: Array = field(default_factory=Array)
-    fixed: Array = field(default_factory=Array)
-    rates: Array = field(default_factory=Array)
-    fidelity: Array = field(default_factory=Array)
-    seeds: Array = field(default_factory=Array)
-    speeds: Array = field(default_factory=Array)
-    start_times: Array = field(default_factory=Array)
+    arrays: dict[str, Array] = field(default_factory=dict)  #: by what they are for the extension
     global_ids: Any = None
     data_are_terms: bool = False
     data_are_computed: bool = False  #: normals
@@ -83,9 +80,12 @@ class Fields:
     problems: list[str] = field(default_factory=list)
     given: Any = None
 
-    def name(self, attribute: str = "data") -> str:
-        array = getattr(self, attribute).values
-        return "" if array is None else array.GetName() or ""
+    def __getitem__(self, kind: str) -> Array:
+        return self.arrays.get(kind, Array())
+
+    @property
+    def data(self) -> Array:
+        return self["data"]
 
 
 def find_array(choice: Choice, index: int, name: str, components: int, block: Any, fields: Fields) -> Array:
@@ -94,43 +94,36 @@ def find_array(choice: Choice, index: int, name: str, components: int, block: An
         return Array()
     label = f'{name} "{choice.name}"' if choice.name else name
     if choice.association not in (POINTS, CELLS, POINTS_THEN_CELLS):
-        fields.problems.append(
-            f"{label} has association {choice.association}; allowed: points (0) or cells (1)")
+        fields.problems.append(say("Association", label, choice.association))
         return Array()
     found, on_cells = choice.locate(block)
     if not isinstance(found, vtkDataArray):
-        problem = (_describe_absence(choice, block) if found is None else
-                   f"is a {found.GetClassName()}; allowed: numeric arrays")
-        fields.absent[index] = (label, f"{label} {problem}")
+        problem = (_describe_absence(choice, label, block) if found is None else
+                   say("Class", label, found.GetClassName()))
+        fields.absent[index] = (label, problem)
         return Array()
     tuples = block.GetNumberOfCells() if on_cells else block.GetNumberOfPoints()
     size = found.GetNumberOfComponents()
     if found.GetNumberOfTuples() != tuples:
-        fields.problems.append(f"{label} has {found.GetNumberOfTuples()} tuples; allowed: {tuples}, one per "
-                               + ("cell" if on_cells else "point"))
+        fields.problems.append(say("Tuples", label, found.GetNumberOfTuples(), tuples,
+                                   "cell" if on_cells else "point"))
         return Array()
     if size < 1 if components == ANY else size != components:
-        unset = "" if choice.name else "is not set, and the active array " + (
-            f'"{found.GetName()}" ' if found.GetName() else "")
-        fields.problems.append(f"{label} {unset}has {size} components; allowed: "
-                               + ("1 or more" if components == ANY else str(components)))
+        if not choice.name:
+            label += " is not set, and the active array" + (f' "{found.GetName()}"' if found.GetName() else "")
+        fields.problems.append(say("Components", label, size, "1 or more" if components == ANY else components))
         return Array()
     return Array(found, on_cells)
 
 
-def _describe_absence(choice: Choice, block: Any) -> str:
+def _describe_absence(choice: Choice, label: str, block: Any) -> str:
     on_points, on_cells = choice.association != CELLS, choice.association != POINTS
-    kind = "point or cell" if on_points and on_cells else "cell" if on_cells else "point"
-    if not choice.name:
-        attribute = vtkDataSetAttributes.GetAttributeTypeAsString(
-            choice.attribute or vtkDataSetAttributes.SCALARS)
-        return (f"is not set and the input has no active {kind} {attribute}; choose a {kind} array")
-    text = f"is not among the {kind} arrays of the input; choose one of them"
-    if not on_cells and block.GetCellData().HasArray(choice.name):
-        return text + ", or association 1 for the cell array of this name"
-    if not on_points and block.GetPointData().HasArray(choice.name):
-        return text + ", or association 0 for the point array of this name"
-    return text
+    if choice.name:
+        others = block.GetCellData() if on_points else block.GetPointData()
+        return _core.say_absent(label, "", on_points, on_cells, bool(others.HasArray(choice.name)))
+    attribute = choice.attribute or vtkDataSetAttributes.SCALARS
+    name = vtkDataSetAttributes.GetAttributeTypeAsString(attribute)
+    return _core.say_absent(label, name, on_points, on_cells, False)
 
 
 def find_disagreement(choices: dict[int, Choice], blocks: list[Block]) -> str:
@@ -141,14 +134,12 @@ def find_disagreement(choices: dict[int, Choice], blocks: list[Block]) -> str:
             found, on_cells = choice.locate(block.input) if choice.is_set else (None, False)
             if not isinstance(found, vtkDataArray) or block.input.GetNumberOfPoints() == 0:
                 continue
-            size = found.GetNumberOfComponents()
-            kind = "" if index in FLAGS else f"{found.GetDataTypeAsString()}, "
-            text = (f'"{found.GetName() or ""}" ({kind}{size} '
-                    f'component{"" if size == 1 else "s"}, on {"cells" if on_cells else "points"})')
+            text = _core.describe_array(
+                found.GetName() or "", "" if index in FLAGS else found.GetDataTypeAsString(),
+                found.GetNumberOfComponents(), on_cells)
             first = known.setdefault((block.surface, index), text)
             if first != text:
-                return (f"the pieces of the input have different arrays, {first} and {text}; allowed: one "
-                        "name, type, number of components and place in all pieces")
+                return say("Unlike", first, text)
     return ""
 
 
@@ -166,64 +157,35 @@ def settle_absence(fields: list[Fields], names: list[str]) -> tuple[list[str], l
         if len(blocks[index]) == len(fields):
             problems.append(problem)
         else:
-            warnings.append(f"{label} counts as not set on {list_blocks(blocks[index])}, without such a "
-                            "numeric array")
+            warnings.append(say("SomeBlocks", label, _core.list_blocks(blocks[index])))
     return problems, warnings
-
-
-def list_blocks(names: list[str]) -> str:
-    """Data of thousands of blocks would make messages of thousands of names."""
-    text = ("block " if len(names) == 1 else "blocks ") + ", ".join(names[:8])
-    return text if len(names) <= 8 else f"{text} and {len(names) - 8} more"
-
-
-def join_sentences(found: list[tuple[str, str]], blocks: int) -> list[str]:
-    """Sentences about blocks, each once with the names of its blocks, unless it is about all of them.
-    found: pairs of sentence and block."""
-    names: dict[str, list[str]] = {}
-    for sentence, name in found:
-        known = names.setdefault(sentence, [])
-        if not known or known[-1] != name:
-            known.append(name)
-    return [sentence if len(known) == blocks or not known[0] else f"{list_blocks(known)}: {sentence}"
-            for sentence, known in names.items()]
 
 
 def read_fields(fields: Fields, block: Block) -> None:
     """What the numerics take. Raises SurfaceError on values that are not allowed."""
-    arrays = {name: (convert(found.values), found.on_cells) for name, convert, found in (
-        ("data", _as_data, fields.data), ("mask", _as_flags, fields.mask), ("fixed", _as_flags, fields.fixed),
-        ("directions", _as_numbers, fields.direction), ("fidelity", _as_numbers, fields.fidelity),
-        ("seeds", _as_numbers, fields.seeds))}
-    arrays["rates"] = _as_numbers(fields.rates.values), False
-    data, on_cells = arrays["data"]
+    given, count = block.input, block.input.GetNumberOfPoints()
+    arrays = {kind: (_CONVERTERS.get(kind, _as_numbers)(found.values), found.on_cells, found.name)
+              for kind, found in fields.arrays.items()}
+    data, *place = arrays.get("data", (None,))
     if fields.alpha_is_data and data is not None:
         data = data.astype(np.float64)
-        arrays["data"] = data, on_cells
+        arrays["data"] = data, *place
+    if given.GetPointData().HasArray(BETWEEN) and given.GetCellData().HasArray(GIVEN_CELL):
+        arrays["between"] = to_numpy(given.GetPointData().GetArray(BETWEEN)), False, ""
+        arrays["given_faces"] = _as_integers(given.GetCellData().GetArray(GIVEN_CELL)), True, ""
+    if fields.global_ids is not None:
+        ids = fields.global_ids
+        if ids.GetNumberOfTuples() != count:
+            raise SurfaceError(say("Tuples", f"the input's array \"{ids.GetName()}\"", ids.GetNumberOfTuples(),
+                                   count, "point"))
+        arrays["ids"] = _as_integers(ids), False, ""
     integers = data is not None and fields.data.values.GetDataType() not in (VTK_FLOAT, VTK_DOUBLE)
-    fields.given = Given(make_core(block.core, arrays, fields.data_are_terms), data, integers, {
-        "points": block.input.GetNumberOfPoints(), "faces": block.input.GetNumberOfCells()})
-    core = fields.given.core
-    core.set_names(fields.name(), block.name, fields.name("direction"), fields.name("seeds"))
+    core = make_core(block.core, arrays, fields.data_are_terms, block.name)
+    fields.given = Given(core, data, integers, {"points": count, "faces": given.GetNumberOfCells()})
     if fields.samples is not None:
         core.set_samples(*fields.samples)
     if fields.sources is not None:
         core.set_sources(*fields.sources)
-    speeds, times = _as_numbers(fields.speeds.values), _as_numbers(fields.start_times.values)
-    if speeds is not None:
-        core.set_speeds(speeds, fields.speeds.on_cells)
-    if times is not None:
-        core.set_start_times(times)
-    between = block.input.GetPointData().GetArray(BETWEEN)
-    given = block.input.GetCellData().GetArray(GIVEN_CELL)
-    if between is not None and given is not None:
-        core.set_measured(to_numpy(between), to_numpy(given).astype(np.int64))
-    if fields.global_ids is not None:
-        ids, count = fields.global_ids, block.input.GetNumberOfPoints()
-        if ids.GetNumberOfTuples() != count:
-            raise SurfaceError(f"the input's array \"{ids.GetName()}\" has {ids.GetNumberOfTuples()} "
-                               f"tuples; allowed: {count}, one per point")
-        core.set_ids(to_numpy(ids).astype(np.int64))
 
 
 def _as_data(array: Any) -> NDArray[Any] | None:
@@ -239,23 +201,24 @@ def _as_numbers(array: Any) -> NDArray[np.float64] | None:
     return None if array is None else np.ascontiguousarray(to_numpy(array), dtype=np.float64)
 
 
+def _as_integers(array: Any) -> NDArray[np.int64]:
+    return to_numpy(array).astype(np.int64)
+
+
 def _as_flags(array: Any) -> NDArray[np.uint8] | None:
     return None if array is None else np.ascontiguousarray(to_numpy(array) != 0, dtype=np.uint8)
 
 
-_POINT_SET = ("; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, which is "
-              "vtkTableToPolyData)")
+_CONVERTERS: dict[str, Callable[[Any], Any]] = {"data": _as_data, "mask": _as_flags, "fixed": _as_flags}
 
 
 def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Any, list[str]]:
     """The values of the second input of an interpolation, and problems with it."""
     if not isinstance(data, vtkPointSet):
-        return None, [f"the points with values are a {data.GetClassName()}" + _POINT_SET]
+        return None, [say("NoPointSet", "the points with values are", data.GetClassName())]
     hidden = _hidden(data)
     if hidden.all():
-        return None, ["the second input, the points with values, has " + (
-            f"{len(hidden)} hidden points; allowed: 1 or more that are not hidden" if len(hidden) else
-            "0 points; allowed: 1 or more")]
+        return None, [say("HiddenPoints" if len(hidden) else "NoPoints", "the points with values", len(hidden), "")]
     problems: list[str] = []
 
     def find(name: str, label: str) -> Any:
@@ -263,11 +226,9 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Any, lis
         found = attributes.GetAbstractArray(name) if name else attributes.GetScalars()
         label = f'{label} "{name}"' if name else label
         if found is None:
-            problems.append(label + (
-                " is not among the point arrays of the points with values; choose one of them" if name else
-                " is not set and the points with values have no active scalars; choose an array"))
+            problems.append(say("NotAmongPoints" if name else "NoScalarsOfPoints", label))
         elif not isinstance(found, vtkDataArray):
-            problems.append(f"{label} is a {found.GetClassName()}; allowed: numeric arrays")
+            problems.append(say("Class", label, found.GetClassName()))
         else:
             return found
         return None
@@ -275,7 +236,7 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Any, lis
     values = find(value_name, "PointValueArray")
     weights = find(weight_name, "PointWeightArray") if weight_name else None
     if weights is not None and weights.GetNumberOfComponents() != 1:
-        problems.append(f"PointWeightArray has {weights.GetNumberOfComponents()} components; allowed: 1")
+        problems.append(say("Components", "PointWeightArray", weights.GetNumberOfComponents(), 1))
     if problems:
         return None, problems
     given: Any = _as_data(values)
@@ -290,7 +251,7 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Any, lis
 def read_sources(data: Any) -> tuple[Any, list[str]]:
     """The points and lines of the second input of distances, and problems with it."""
     if not isinstance(data, vtkPointSet):
-        return None, [f"the second input, the sources, is a {data.GetClassName()}" + _POINT_SET]
+        return None, [say("NoPointSet", "the second input, the sources, is", data.GetClassName())]
     hidden = _hidden(data)
     of_points = hidden.copy()
     flags = data.GetCellGhostArray()
@@ -310,9 +271,7 @@ def read_sources(data: Any) -> tuple[Any, list[str]]:
                     segments += [end for pair in zip(corners, corners[1:]) for end in pair]
     hidden[segments] = False  # also of a hidden line
     if hidden.all():
-        return None, ["the second input, the sources, has " + (
-            f"{len(hidden)} hidden points; allowed: 1 or more points or lines that are not hidden"
-            if len(hidden) else "0 points; allowed: 1 or more points or lines")]
+        return None, [say("HiddenPoints" if len(hidden) else "NoPoints", "the sources", len(hidden), " points or lines")]
     return (places_of(data), np.array(segments, dtype=np.int64), hidden.astype(np.uint8)), []
 
 

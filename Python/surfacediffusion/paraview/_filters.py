@@ -15,11 +15,10 @@ from vtkmodules.vtkCommonExecutionModel import vtkDemandDrivenPipeline, vtkStrea
 
 from .. import _core
 from .._models import Output, find_outputs, read_outputs
-from .._polydata import HIDDEN_CELL, cell_flags, compute_point_normals, make_array, to_numpy, turn_polygons
+from .._polydata import HIDDEN_CELL, cell_flags, compute_point_normals, make_array, say, to_numpy, turn_polygons
 from ._algorithm import SurfaceFilter, list_settings
 from ._fields import (
-    CELLS, POINTS, POINTS_THEN_CELLS, Choice, Fields, join_sentences, read_samples, read_sources,
-    settle_absence,
+    CELLS, POINTS, POINTS_THEN_CELLS, Array, Choice, Fields, read_samples, read_sources, settle_absence,
 )
 from ._pieces import Stitched
 from ._results import write_columns, write_curves, write_history
@@ -36,7 +35,7 @@ class RunFilter(SurfaceFilter):
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
         if self.RESULT_NAME and not self.own["ResultArrayName"]:
-            problems.append("ResultArrayName is empty; allowed: any name")
+            problems.append(say("NoName"))
         found, everything, sentences = [], [], []
         for block in blocks:
             fields = Fields()
@@ -45,7 +44,7 @@ class RunFilter(SurfaceFilter):
             everything.append(fields)
             if takes_part:
                 found.append((block, fields))
-        problems += join_sentences(sentences, len(blocks))
+        problems += _core.join_sentences(sentences, len(blocks))
         absent, warnings = settle_absence(everything, [block.name for block in blocks])
         problems += absent
         self._warnings += warnings
@@ -87,20 +86,20 @@ class ModelFilter(SurfaceFilter):
                 continue
             texts = fields.problems + [problem for _, problem in fields.absent.values()]
             without += [(text, block.name) for text in texts]
-        sentences = join_sentences(without, len(blocks))
+        sentences = _core.join_sentences(without, len(blocks))
         if not found:
             problems += sentences
             return []
-        self._warnings += [text + " (without data, a block passes through)" for text in sentences]
+        self._warnings += [say("BlockPasses", text) for text in sentences]
         absent, warnings = settle_absence(
             [fields for _, fields in found], [block.name for block, _ in found])
         problems += absent
         self._warnings += warnings
         for block, fields in found:
             if 2 in fields.absent:  # where there is no direction, diffusion is isotropic
-                fields.direction.values = make_array("", np.zeros((block.input.GetNumberOfPoints(), 3)))
+                fields.arrays["directions"] = Array(make_array("", np.zeros((block.input.GetNumberOfPoints(), 3))))
         of_blocks = [(text, block.name) for block, fields in found for text in fields.problems]
-        problems += join_sentences(of_blocks, len(found))
+        problems += _core.join_sentences(of_blocks, len(found))
         if not absent:
             self.check([pair for pair in found if not pair[1].problems], problems)
         return found
@@ -195,9 +194,7 @@ class ModelFilter(SurfaceFilter):
         SurfaceFilter.begin(self, inputs)
         times = self._times_of(inputs[0].GetInformationObject(0))
         if times and times[0] != times[-1] and _core.find_times(self.MODEL, self.settings):
-            self._warnings.append(
-                f"GenerateTimeSteps is on and the input has times from {times[0]:g} to {times[-1]:g}: all "
-                f"results are of the input at {times[0]:g}; to follow its times, set GenerateTimeSteps to off")
+            self._warnings.append(say("Times", times[0], times[-1], times[0]))
 
     def _choose_step(self, request: Any, outputs: Any) -> int:
         """The step of the requested time; without one, the last."""
@@ -244,9 +241,7 @@ class HarmonicMap(ModelFilter):
             data is given.GetCellData().GetNormals())
         fields.result_is_normals = bool(self.own["UseAsNormals"]) and is_normals
         if self.settings.get("MoveVertices") and not is_normals:
-            fields.problems.append(
-                f'MoveVertices is on but InputArray "{fields.name()}" is not the surface\'s normals; '
-                "allowed: off, or the active normals of points or cells, or none, as InputArray")
+            fields.problems.append(say("NoNormals", fields.data.name))
         return True
 
 
@@ -268,14 +263,12 @@ class Texture(ModelFilter):
             return ModelFilter.find_refinement(self, mean)
         size = self.settings.get("FeatureSize", 0.0)
         length = _core.edge_length_for_features(size, mean)
-        return length, (f"FeatureSize is {size:g}, only {size / mean:g} mean edge lengths (to keep the "
-                        "edges, set RefineTo to 0)" if length > 0.0 else "")
+        return length, say("Features", float(size), size / mean) if length > 0.0 else ""
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         self.find_arrays(block, fields, range(0 if self.choices[0].is_set else 1, 5))
-        if fields.rates.values is not None and not fields.rates.on_cells:
-            fields.problems.append(
-                "DiffusionRateArray is a point array; allowed: arrays of 4 components per cell")
+        if fields["rates"].values is not None and not fields["rates"].on_cells:
+            fields.problems.append(say("PointRates"))
         return True  # an initial state is optional
 
 
@@ -312,10 +305,9 @@ class Segmentation(ModelFilter):
         components -= data.GetDataType() == VTK_UNSIGNED_CHAR and components in (2, 4)  # alpha
         for region, component in sorted(self._means):
             if not 1 <= region <= regions:
-                problems.append(f"the region of a Mean is {region}; allowed: 1 to NumberOfRegions {regions}")
+                problems.append(say("Region", region, regions))
             if not 0 <= component < components:
-                problems.append(f"the component of a Mean is {component}; allowed: 0 to {components - 1}, "
-                                "the last component of InputArray")
+                problems.append(say("Component", component, components - 1))
 
 
 class Interpolation(ModelFilter):
@@ -341,7 +333,7 @@ class Derivatives(RunFilter):
 
 
 class DirectionField(RunFilter):
-    NAMED_AFTER = "direction"
+    NAMED_AFTER = "directions"
     _HINTS = 3  #: of Method
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
@@ -361,9 +353,9 @@ class Distance(RunFilter):
         fields.problems += self.problems_of_points
         fields.sources = self.points
         self.find_arrays(block, fields, [1, 2, 8] if self.has_points else [0, 9, 1, 2, 8])
-        for array, name in ((fields.data, "SourceArray"), (fields.start_times, "SourceTimes")):
+        for array, name in ((fields.data, "SourceArray"), (fields["start_times"], "SourceTimes")):
             if array.on_cells:
-                fields.problems.append(f"{name} is a cell array; allowed: point arrays of 1 component")
+                fields.problems.append(say("CellArray", name))
         return fields.data.values is not None or fields.sources is not None
 
 
@@ -380,7 +372,7 @@ class Relief(RunFilter):
     def find_fields(self, block: Block, fields: Fields) -> bool:
         found = RunFilter.find_fields(self, block, fields)
         if fields.data.on_cells:
-            fields.problems.append("InputArray is a cell array; allowed: point arrays of 1 component")
+            fields.problems.append(say("CellArray", "InputArray"))
         return found
 
 

@@ -8,20 +8,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Iterator
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import (
-    VTK_DOUBLE, vtkDataArray, vtkDoubleArray, vtkIdTypeArray, vtkPoints, vtkTypeInt64Array,
-    vtkUnsignedCharArray,
-)
+from vtkmodules.vtkCommonCore import vtkDataArray, vtkDoubleArray, vtkPoints, vtkUnsignedCharArray
 from vtkmodules.vtkCommonDataModel import vtkBoundingBox, vtkCellArray, vtkDataSetAttributes, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData
 
 from .. import _core
 from .._polydata import (
-    ABSENT, Cells, cell_flags, copy_component_names, drop_normals, make_array, places_of, read_cells, to_numpy,
+    ABSENT, Cells, cell_flags, copy_arrays, copy_component_names, drop_normals, make_array, places_of,
+    read_cells, to_numpy,
 )
 from ._surfaces import BETWEEN, GIVEN_CELL, Block
 
@@ -169,21 +167,21 @@ def _stitch(pieces: list[Piece], owners: NDArray[np.int64], numbers: NDArray[np.
     point_of[sources] = np.arange(len(sources))
     for piece in pieces:
         piece.points = point_of[owners[piece.rows]]
-    surface = vtkPolyData()
+    surface, everything = vtkPolyData(), _append(pieces, names, attributes)
     of_pieces = np.searchsorted(rows, sources)  # among the points of these pieces
-    places = np.concatenate([piece.places for piece in pieces])[of_pieces]
-    with_points = [piece for piece in pieces if len(piece.places)]
-    is_double = any(piece.block.input.GetPoints().GetDataType() == VTK_DOUBLE for piece in with_points)
     surface.SetPoints(vtkPoints())
-    surface.GetPoints().SetData(make_array("Points", places.astype(np.float64 if is_double else np.float32)))
-    _merge([(piece.block.input.GetPointData(), 0, len(piece.places)) for piece in with_points],
-           of_pieces, names, attributes, surface.GetPointData())
+    if len(sources):
+        surface.GetPoints().SetData(make_array("Points", to_numpy(everything.GetPoints().GetData())[of_pieces]))
+    copy_arrays(everything.GetPointData(), surface.GetPointData(), len(rows),
+                lambda values, _: values[of_pieces], of_pieces)
     if by_id:  # numbers of places are for the order alone
         surface.GetPointData().SetGlobalIds(make_array("surface diffusion point id", numbers[sources]))
     cell_sources = _stitch_cells(pieces, surface)
-    with_cells = [piece for piece in pieces if piece.cells.count]
-    _merge([(piece.block.input.GetCellData(), piece.cells.first, piece.cells.count) for piece in with_cells],
-           cell_sources, names, attributes, surface.GetCellData())
+    polygons_first = np.argsort(np.concatenate([piece.cells.is_strip for piece in pieces]), kind="stable")
+    first = everything.GetNumberOfVerts() + everything.GetNumberOfLines()
+    of_cells = first + np.argsort(polygons_first)[cell_sources]
+    copy_arrays(everything.GetCellData(), surface.GetCellData(), everything.GetNumberOfCells(),
+                lambda values, _: values[of_cells], of_cells)
     for piece in pieces:
         _keep_names(piece.block.input.GetPointData(), surface.GetPointData())
         _keep_names(piece.block.input.GetCellData(), surface.GetCellData())
@@ -259,52 +257,30 @@ def _sort_cells(cells: Cells, ids: NDArray[np.int64]) -> NDArray[np.int64]:
 # Arrays ----------------------------------------------------------------------------------------
 
 
-def _merge(pieces: list[tuple[Any, int, int]], rows: NDArray[np.int64], names: dict[str, bool],
-           attributes: set[int], merged: Any) -> None:
-    """Add the arrays that are read and that all pieces have, with the same name, type (but of flags) and
-    number of components. pieces: of each the arrays, its first tuple and their number. rows: of the tuples
-    of all pieces."""
-    lists = [list(_find_read(*piece, names, attributes)) for piece in pieces]
-    for key, array in lists[0] if lists else []:
-        arrays = [dict(found).get(key) for found in lists]
-        is_of_flags = bool(names.get(key[0])) and isinstance(array, vtkDataArray)
-        if any(other is None or not is_of_flags and other.GetDataType() != array.GetDataType()
-               or other.GetNumberOfComponents() != array.GetNumberOfComponents() for other in arrays):
-            continue
-        new = vtkTypeInt64Array() if isinstance(array, vtkIdTypeArray) else array.NewInstance()
-        if is_of_flags:
-            new = vtkDoubleArray()
-        if isinstance(array, vtkDataArray):
-            values = [to_numpy(other)[first:first + count]
-                      for other, (_, first, count) in zip(arrays, pieces)]
-            new.DeepCopy(numpy_to_vtk(np.ascontiguousarray(np.concatenate(values)[rows])))
-        else:  # which cannot be data
-            new.SetNumberOfComponents(array.GetNumberOfComponents())
-            new.SetNumberOfTuples(len(rows))
-        new.SetName(array.GetName())
-        for other in arrays[::-1]:
-            copy_component_names(other, new)
-        index = merged.AddArray(new)
-        for kind in attributes:
-            if all(of_piece.GetAbstractAttribute(kind) is other
-                   for (of_piece, _, _), other in zip(pieces, arrays)):
-                merged.SetActiveAttribute(index, kind)
-
-
-def _find_read(
-    arrays: Any, first: int, count: int, names: dict[str, bool], attributes: set[int]
-) -> Iterator[tuple[tuple[str, int], Any]]:
-    """The arrays that are read, by name and the number among those of this name."""
-    active = [arrays.GetAbstractAttribute(kind) for kind in attributes]
-    seen: dict[str, int] = {}
-    for a in range(arrays.GetNumberOfArrays()):
-        array = arrays.GetAbstractArray(a)
-        name = array.GetName() or ""
-        is_read = name in names or name in (BETWEEN, GIVEN_CELL) or any(array is each for each in active)
-        if is_read and name != _GHOSTS and (
-                array.GetNumberOfTuples() >= first + count):
-            seen[name] = seen.get(name, -1) + 1
-            yield (name, seen[name]), array
+def _append(pieces: list[Piece], names: dict[str, bool], attributes: set[int]) -> Any:
+    """The pieces one after another, with the arrays that are read and that all of them have. Flags become
+    numbers of one type."""
+    append = vtkAppendPolyData()
+    for piece in pieces:
+        part = vtkPolyData()
+        part.ShallowCopy(piece.block.input)
+        for data, count in ((part.GetPointData(), part.GetNumberOfPoints()),
+                            (part.GetCellData(), part.GetNumberOfCells())):
+            data.SetActiveAttribute(-1, data.GLOBALIDS)  # those that are read are data
+            active = [data.GetAbstractAttribute(kind) for kind in attributes]
+            for a in range(data.GetNumberOfArrays())[::-1]:
+                array = data.GetAbstractArray(a)
+                name = array.GetName() or ""
+                is_read = name in names or name in (BETWEEN, GIVEN_CELL) or any(array is each for each in active)
+                if name == _GHOSTS or not is_read or array.GetNumberOfTuples() != count:
+                    data.RemoveArray(a)
+                elif names.get(name) and isinstance(array, vtkDataArray):
+                    flags = vtkDoubleArray()
+                    flags.DeepCopy(array)
+                    data.AddArray(flags)
+        append.AddInputData(part)
+    append.Update()
+    return append.GetOutput()
 
 
 def _keep_names(given: Any, merged: Any) -> None:

@@ -41,7 +41,7 @@ class Refinement:
             self._before.append((block, before))
             if refined is not None and len(refined["parents"]):
                 block.input = refined_polydata(before, refined["points"], refined["triangles"],
-                                               refined["faces"].ravel(), refined["parents"], rules)
+                                               refined["faces"], refined["parents"], rules)
                 self.triangles += len(refined["triangles"])
                 block.output.ShallowCopy(block.input)
                 given = to_numpy(block.input.GetCellData().GetArray("vtkOriginalCellIds"))
