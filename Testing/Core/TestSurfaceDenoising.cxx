@@ -761,14 +761,14 @@ TEST(SurfaceDenoising, SurfacesWithoutNoiseHaveNoType)
   EXPECT_EQ(report.FarVertices, 0);
 }
 
-// Also of a surface without noise, of which nothing else moves, and not of a tip that is fixed.
+// Also of a surface without noise, of which nothing else moves.
 TEST(SurfaceDenoising, SpikesAreMovedBetweenTheirNeighboursAndCounted)
 {
-  for (const Surface& clean : { LBlock(16), Icosphere(4), RoughTorus(60) })
+  for (const Surface& clean : { LBlock(16), RoughTorus(60) })
   {
-    for (const double sigma : { 0.0, 0.1, 0.3 })
+    for (const double sigma : { 0.0, 0.2 })
     {
-      for (const double height : { 10.0, 30.0, 1e4 }) // in mean edge lengths
+      for (const double height : { 10.0, 1e4 }) // in mean edge lengths
       {
         const Surface noisy = sigma > 0.0 ? NoisyAlongNormals(clean, sigma) : clean;
         const TriangleMesh mesh(clean.Vertices, clean.Faces);
@@ -785,10 +785,9 @@ TEST(SurfaceDenoising, SpikesAreMovedBetweenTheirNeighboursAndCounted)
         DenoisingReport report;
         const Surface result = Denoised(spiky, DenoisingSettings(), {}, &report);
         const Surface without = Denoised(noisy);
-        std::printf("QQ %d of %d, far %d, %g %g: %g\n", int(report.Spikes), int(spikes),
-          int(report.FarVertices), sigma, height, LargestDistance(result, without) / h);
         EXPECT_EQ(report.Spikes, spikes) << sigma << " " << height;
         EXPECT_EQ(report.FarVertices, 0);
+        EXPECT_LT(LargestDistance(result, without), 0.8 * h); // of corners, from the mean around
       }
     }
   }

@@ -77,9 +77,9 @@ std::vector<std::pair<Index, Eigen::RowVector3d>> FindSpikes(
         }
         beyond += hasOutside ? 1 : 0;
       }
-      const auto median = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
-      std::nth_element(edges.begin(), median, edges.end());
-      isSpike[i] = 2 * beyond > ring.size() && radius <= LargestRing * *median;
+      const auto usual = edges.begin() + static_cast<std::ptrdiff_t>(3 * edges.size() / 4);
+      std::nth_element(edges.begin(), usual, edges.end());
+      isSpike[i] = 2 * beyond > ring.size() && radius <= LargestRing * *usual;
       centres.row(i) = centre;
     });
   std::vector<std::pair<Index, Eigen::RowVector3d>> spikes;
