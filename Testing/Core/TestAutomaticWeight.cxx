@@ -172,7 +172,8 @@ TEST(AutomaticWeight, OfUnevenNoiseWithItsFactorsLeavesLessThanTheDataHaveInAnyU
     {
       const double sigma = s.Vertices(i, 2) > 0.0 ? 0.03 : 0.3;
       data.Clean[i] = std::sin(3.0 * s.Vertices(i, 0));
-      data.Input.Data.Data.Values(i, 0) = data.Clean[i] + sigma * Gaussian(static_cast<Index>(i), 4);
+      data.Input.Data.Data.Values(i, 0) =
+        data.Clean[i] + sigma * Gaussian(static_cast<Index>(i), 4);
       data.Input.Data.FidelityFactors.Values[static_cast<std::size_t>(i)] =
         unit * unit / (sigma * sigma);
       noise += sigma * sigma / static_cast<double>(s.Vertices.rows());
