@@ -55,9 +55,13 @@ double EstimateAt(int edges, const FitData& data, const Vector& factors, double&
     const LinearFit fit = FitAround(i, edges, rings, data);
     const std::vector<Index>& known = fit.Known;
     const Vector& weights = fit.Weights;
-    count += weights.size() > 0 ? 1.0 : 0.0;
+    if (weights.size() == 0)
+    {
+      continue;
+    }
+    count += 1.0;
     const double deviation = DeviationOfResidual(i, fit, factors);
-    for (Eigen::Index k = 0; k < columns && weights.size() > 0; ++k)
+    for (Eigen::Index k = 0; k < columns; ++k)
     {
       double residual = 0.0;
       bool varies = false;
