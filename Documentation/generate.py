@@ -35,7 +35,7 @@ class Filter:
 
 FILTERS = [
     Filter("heat", "vtkFVMHeatFilter",
-           ("LinearDiffusion", "AnisotropicDiffusion", "SteadyState", "Deblurring")),
+           ("LinearDiffusion", "MixedMass", "AnisotropicDiffusion", "SteadyState", "Deblurring")),
     Filter("intrinsic_tv", "vtkIntrinsicTVFilter",
            ("TotalVariationFlow", "TotalVariationMinimizer", "NonlinearDiffusion", "EdgeFunctions",
             "CrouzeixRaviart", "ColorModels")),
