@@ -78,7 +78,6 @@ class Words(WorkbenchTest):
         self.assertIn("roi.func.gii has 1 columns, but lh.func.gii has 2", error)
 
 
-@unittest.skipUnless(shutil.which("wb_command"), "needs Connectome Workbench")
 def heat_on_the_sphere(points, faces, values, fwhm):
     """The heat equation itself on the unit sphere, by Legendre polynomials, at some of the points."""
     rows = np.arange(0, len(points), 40)
@@ -94,6 +93,7 @@ def heat_on_the_sphere(points, faces, values, fwhm):
     return kernel @ values / kernel.sum(axis=1)[:, None], rows
 
 
+@unittest.skipUnless(shutil.which("wb_command"), "needs Connectome Workbench")
 class SameMaps(WorkbenchTest):
     def compare(self, surface, data, *words, share=0.03):
         subprocess.run(["wb_command", "-metric-smoothing", surface, data, words[0], "wb.func.gii",

@@ -141,7 +141,8 @@ class ComingFrom(unittest.TestCase):
             inside = (b != 0).any(axis=1)
             np.testing.assert_array_equal(a[~inside], 0)
             difference = np.sqrt(((a - b)[inside]**2).mean(axis=0)) / b[inside].std(axis=0)
-            self.assertLess(difference.max(), 0.03)
+            # Of which .027 is between Workbench and the heat equation (Testing/Command/TestWorkbench.py).
+            self.assertLess(difference.max(), 0.04)
 
     def test_lines_of_python(self):
         maps = noise(2)
