@@ -4,9 +4,8 @@
 #include "Core/Models/Fields/RandomField.h"
 #include "Core/Models/Fields/ScaleFilter.h"
 #include "Core/Operators/CotanWeights.h"
-#include "Core/Operators/MixedMass.h"
 #include "Core/Solvers/SolverChoice.h"
-#include "NoiseWidth.h"
+#include "Meshes.h"
 #include "ThreadedFor.h"
 
 #include <Eigen/Eigenvalues>
@@ -25,26 +24,22 @@ double Heat(double x)
   return std::exp(-x);
 }
 
-/// f(L) M^-1 with L = M^-1 K by all eigenvectors; hasMixedMass: B for M.
-Eigen::MatrixXd DenseFunction(const Assembler& assembler, const std::function<double(double)>& f,
-  bool timesMass = false, bool hasMixedMass = false)
+/// f(L) M^-1 with L = M^-1 K by all eigenvectors.
+Eigen::MatrixXd DenseFunction(
+  const Assembler& assembler, const std::function<double(double)>& f, bool timesMass = false)
 {
   const TriangleMesh& mesh = assembler.Mesh();
   SparseMatrix stiffness = ZeroMatrix(assembler.Pattern());
   assembler.Fill(stiffness, Vector::Zero(mesh.NumberOfVertices()), 1.0, CotanWeights(mesh));
-  Eigen::MatrixXd mass = mesh.ControlAreas().asDiagonal();
-  if (hasMixedMass)
-  {
-    mass += Eigen::MatrixXd(MixedMinusLumped(assembler));
-  }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> dense(
-    Eigen::MatrixXd(stiffness), mass);
+  const Vector roots = mesh.ControlAreas().cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense(
+    roots.asDiagonal() * Eigen::MatrixXd(stiffness) * roots.asDiagonal());
   const Vector values = dense.eigenvalues().cwiseMax(0.0).unaryExpr(f);
-  const Eigen::MatrixXd& vectors = dense.eigenvectors();
+  const Eigen::MatrixXd vectors = roots.asDiagonal() * dense.eigenvectors();
   Eigen::MatrixXd result = vectors * values.asDiagonal() * vectors.transpose();
   if (timesMass)
   {
-    result = result * mass;
+    result = result * mesh.ControlAreas().asDiagonal();
   }
   return result;
 }
@@ -148,20 +143,14 @@ TEST(ResolventPolynomial, IsTheFunctionOfTheDenseOperator)
     constexpr double pole = 8.37;
     Values u = Noise(mesh, 19);
     const double before = RootMeanSquare(mesh, u);
-    const Values start = u;
-    for (const bool hasMixedMass : { false, true })
-    {
-      const Values expected =
-        DenseFunction(
-          *assembler, [](double lambda) { return Heat(t * lambda); }, true, hasMixedMass) *
-        start;
-      ResolventPolynomial heat(assembler, CotanWeights(mesh), t / pole,
-        ChebyshevSeries([](double y) { return y > 0.0 ? Heat(pole * (1.0 / y - 1.0)) : 0.0; }, 10),
-        MakeCholeskySolver(), SerialFor(), hasMixedMass);
-      u = start;
-      heat.Apply(u);
-      EXPECT_LT(RootMeanSquare(mesh, u - expected), 3e-5 * before) << hasMixedMass;
-    }
+    const Values expected = DenseFunction(
+                              *assembler, [](double lambda) { return Heat(t * lambda); }, true) *
+      u;
+    ResolventPolynomial heat(assembler, CotanWeights(mesh), t / pole,
+      ChebyshevSeries([](double y) { return y > 0.0 ? Heat(pole * (1.0 / y - 1.0)) : 0.0; }, 10),
+      MakeCholeskySolver());
+    heat.Apply(u);
+    EXPECT_LT(RootMeanSquare(mesh, u - expected), 3e-5 * before);
   }
 }
 
@@ -203,15 +192,10 @@ TEST(FunctionDiagonal, IsThatOfTheDenseOperator)
     const TriangleMesh& mesh = assembler->Mesh();
     for (const double step : { 1e-3, 0.1, 10.0 })
     {
-      for (const bool hasMixedMass : { false, true })
-      {
-        const Vector expected = DenseFunction(
-          *assembler, [&](double lambda) { return square(step * lambda); }, false, hasMixedMass)
-                                  .diagonal();
-        const Vector found = FunctionDiagonal(*assembler, CotanWeights(mesh), step, poles,
-          SerialFor(), ProgressMonitor(), hasMixedMass);
-        EXPECT_LT((found - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-6) << step;
-      }
+      const Vector expected =
+        DenseFunction(*assembler, [&](double lambda) { return square(step * lambda); }).diagonal();
+      const Vector found = FunctionDiagonal(*assembler, CotanWeights(mesh), step, poles);
+      EXPECT_LT((found - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-6) << step;
     }
   }
 }
@@ -232,15 +216,13 @@ TEST(RandomField, HasTheVarianceOfTheDenseOperator)
       const bool isMatern = settings.Covariance == FieldCovariance::Matern;
       const auto square = [&](double lambda)
       {
-        const double h = assembler->Mesh().MeanEdgeLength();
         return isMatern ? std::pow(kappa * kappa + lambda, -settings.Nu - 1.0)
-                        : Heat(2.0 * t * lambda) / (1.0 + h * h / 16.0 * lambda);
+                        : Heat(2.0 * t * lambda);
       };
       const double onPlane = isMatern
         ? std::pow(kappa, -2.0 * settings.Nu) / (4.0 * Pi * settings.Nu)
         : 1.0 / (8.0 * Pi * t);
-      const Vector expected =
-        (DenseFunction(*assembler, square, false, !isMatern).diagonal() / onPlane).cwiseSqrt();
+      const Vector expected = (DenseFunction(*assembler, square).diagonal() / onPlane).cwiseSqrt();
       const Vector found = MakeField(assembler, settings).Deviations();
       EXPECT_LT((found - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-3);
     }
@@ -283,28 +265,6 @@ TEST(RandomField, CovarianceOnTheSphereIsTheSumOfLegendrePolynomials)
     {
       // Means over all pairs of a distance and 400 fields, of some 80 independent places each.
       EXPECT_NEAR(sums[bin] / numbers[bin], expected[bin] / numbers[bin], 0.02) << bin;
-    }
-  }
-}
-
-TEST(RandomField, HasTheWidthAndTheDeviationThatAreAskedForFromTwoEdgesOn)
-{
-  for (const Testing::Surface& s : { Icosphere(4), JitteredSphere(4, 0.35) })
-  {
-    const auto assembler = MakeAssembler(s);
-    const TriangleMesh& mesh = assembler->Mesh();
-    for (const double edges : { 2.0, 3.0, 4.0, 6.0 })
-    {
-      RandomField::Settings settings = Gaussian(edges * mesh.MeanEdgeLength());
-      const Values fields = Draw(assembler, settings, 64);
-      EXPECT_NEAR(WidthOfNoise(mesh, fields) / settings.Width, 1.0, edges < 3.0 ? 0.06 : 0.03)
-        << edges;
-      EXPECT_NEAR(std::sqrt(fields.cwiseAbs2().mean()), 1.0, 0.02) << edges;
-      settings.HasUnitVariance = false; // but for the curvature of the sphere
-      EXPECT_NEAR(
-        RootMeanSquare(mesh, Draw(assembler, settings, 64)) / RootMeanSquare(mesh, fields), 1.0,
-        0.05)
-        << edges;
     }
   }
 }

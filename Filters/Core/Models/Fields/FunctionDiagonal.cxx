@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Fields/FunctionDiagonal.h"
 
-#include "Core/Operators/MixedMass.h"
 #include "Core/Solvers/NestedDissection.h"
 #include "Core/Solvers/SupernodalFactor.h"
 
@@ -41,7 +40,7 @@ PoleSum FitPoles(const std::function<double(double)>& g, double first, double la
 }
 
 Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coefficients, double s,
-  const PoleSum& f, const ParallelFor& parallel, const ProgressMonitor& progress, bool hasMixedMass)
+  const PoleSum& f, const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = assembler.Mesh();
   Vector diagonal = Vector::Zero(mesh.NumberOfVertices());
@@ -57,17 +56,7 @@ Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coeffic
   for (Eigen::Index j = 0; j < f.Poles.size(); ++j)
   {
     const double done = static_cast<double>(j);
-    const double pole = f.Poles[j];
-    const Vector diagonalOfMass = pole * mesh.ControlAreas();
-    if (hasMixedMass)
-    {
-      assembler.Fill(matrix, diagonalOfMass, pole,
-        WithMixedMass(mesh, s / pole, coefficients, parallel), nullptr, parallel);
-    }
-    else
-    {
-      assembler.Fill(matrix, diagonalOfMass, s, coefficients, nullptr, parallel);
-    }
+    assembler.Fill(matrix, f.Poles[j] * mesh.ControlAreas(), s, coefficients, nullptr, parallel);
     factor.Compute(
       matrix, isRegular, resolved, parallel, progress.Part(done / count, (done + 0.5) / count));
     diagonal += f.Residues[j] *

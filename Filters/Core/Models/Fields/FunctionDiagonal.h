@@ -24,10 +24,9 @@ PoleSum FitPoles(const std::function<double(double)>& g, double first, double la
 
 /// The diagonal of f(s L) M^-1 with L = M^-1 K and f the sum of poles: per vertex. It is
 ///   sum_j c_j diag (q_j M + s K)^-1,
-/// by selected inversion of one factor after another. hasMixedMass: with B of MixedMass.h in place
-/// of M. Throws Aborted, std::bad_alloc.
+/// by selected inversion of one factor after another. Throws Aborted, std::bad_alloc.
 Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coefficients, double s,
   const PoleSum& f, const ParallelFor& parallel = SerialFor(),
-  const ProgressMonitor& progress = ProgressMonitor(), bool hasMixedMass = false);
+  const ProgressMonitor& progress = ProgressMonitor());
 
 } // namespace SurfaceDiffusion

@@ -5,7 +5,6 @@
 #include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Random.h"
 #include "Core/Models/Fields/FunctionDiagonal.h"
-#include "Core/Operators/MixedMass.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +31,7 @@ struct FieldOperator
   PoleSum Squared; ///< near to p^2 as a function of s lambda
 };
 
-/// h: the mean edge length.
-FieldOperator MakeOperator(const RandomField::Settings& settings, double h)
+FieldOperator MakeOperator(const RandomField::Settings& settings)
 {
   FieldOperator found;
   double first = 0.8; // poles near the one of the function itself: an error of 1e-7
@@ -43,12 +41,8 @@ FieldOperator MakeOperator(const RandomField::Settings& settings, double h)
   {
     const double t = settings.Width * settings.Width / (16.0 * std::log(2.0));
     found.Step = t / HeatPole;
-    const double ofNoise = h * h / 16.0 / found.Step;
-    const auto heat = [ofNoise](double y)
-    {
-      const double x = 1.0 / y - 1.0;
-      return y > 0.0 ? std::exp(-HeatPole * x) / std::sqrt(1.0 + ofNoise * x) : 0.0;
-    };
+    const auto heat = [](double y)
+    { return y > 0.0 ? std::exp(-HeatPole * (1.0 / y - 1.0)) : 0.0; };
     found.Series = ChebyshevSeries(heat, HeatDegree);
     found.DeviationOnPlane = 1.0 / std::sqrt(8.0 * Pi * t);
     first = 2.0 / HeatPole; // of all poles those with the smallest error, 4e-4 of the deviation
@@ -100,7 +94,7 @@ std::vector<double> SizesOfComponents(const TriangleMesh& mesh)
 }
 
 /// Since 0 <= p <= 1, and p(Y) keeps constants, the variances are between 1 over the area of the
-/// component and 1 over that of the vertex, times 8/5 with mixed masses; on a component that is much smaller than the width
+/// component and 1 over that of the vertex; on a component that is much smaller than the width
 /// nothing but constants is left. Round-off takes these away where the matrix is all but singular.
 void BoundVariances(const TriangleMesh& mesh, double step, Vector& variances)
 {
@@ -115,7 +109,7 @@ void BoundVariances(const TriangleMesh& mesh, double step, Vector& variances)
     for (Eigen::Index i = first; i < end; ++i)
     {
       const double found = isConstant || !std::isfinite(variances[i]) ? smallest : variances[i];
-      variances[i] = std::max(smallest, std::min(found, 1.6 / mesh.ControlAreas()[i]));
+      variances[i] = std::max(smallest, std::min(found, 1.0 / mesh.ControlAreas()[i]));
     }
   }
 }
@@ -140,50 +134,18 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
   const TriangleMesh& mesh = this->Assembly->Mesh();
   const double h = mesh.MeanEdgeLength();
   const double size = std::sqrt(mesh.ControlAreas().sum());
-  FieldOperator made = MakeOperator(WithinBounds(settings, h, size), h);
-  const bool isGaussian = settings.Covariance == FieldCovariance::Gaussian;
-  if (isGaussian)
-  {
-    this->MassDifference = MixedMinusLumped(*this->Assembly, parallel);
-  }
+  FieldOperator made = MakeOperator(WithinBounds(settings, h, size));
   this->DeviationOnPlane = made.DeviationOnPlane;
   if (settings.HasUnitVariance && this->RelativeDeviations.size() == 0)
   {
-    Vector variances = FunctionDiagonal(
-      *this->Assembly, coefficients, made.Step, made.Squared, parallel, progress, isGaussian);
+    Vector variances =
+      FunctionDiagonal(*this->Assembly, coefficients, made.Step, made.Squared, parallel, progress);
     BoundVariances(mesh, made.Step, variances);
     this->RelativeDeviations = variances.cwiseSqrt() / made.DeviationOnPlane;
   }
   auto solver = MakeResolventSolver(mesh, made.Step, made.Series, parallel);
-  this->Operator.emplace(this->Assembly, coefficients, made.Step, std::move(made.Series),
-    std::move(solver), parallel, isGaussian);
-}
-
-/// Of the covariance M^-1, noise becomes (M^-1 B)^(-1/2) noise, of the covariance B^-1. The
-/// eigenvalues of M^-1 (M - B) are from 0 to 3/8.
-void RandomField::CorrelateNoise(Values& noise) const
-{
-  constexpr double largest = 0.375;
-  static const std::vector<double> series =
-    ChebyshevSeries([](double y) { return 1.0 / std::sqrt(1.0 - largest * y); }, 8);
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  const Values start = noise;
-  Values product(noise.rows(), noise.cols());
-  Values next = Values::Zero(noise.rows(), noise.cols());
-  noise *= series.back();
-  for (std::size_t k = series.size() - 1; k-- > 0;) // Clenshaw's recurrence, as in SumChebyshev()
-  {
-    Multiply(this->MassDifference, noise, product, this->Parallel);
-    const double twice = k == 0 ? 1.0 : 2.0;
-    ForEach(this->Parallel, mesh.NumberOfVertices(),
-      [&](Index i)
-      {
-        const double factor = -2.0 / (largest * mesh.ControlAreas()[i]);
-        next.row(i) =
-          series[k] * start.row(i) + twice * (factor * product.row(i) - noise.row(i)) - next.row(i);
-      });
-    std::swap(noise, next);
-  }
+  this->Operator.emplace(
+    this->Assembly, coefficients, made.Step, std::move(made.Series), std::move(solver), parallel);
 }
 
 void RandomField::Draw(
@@ -200,10 +162,6 @@ void RandomField::Draw(
           deviation * NormalRandom(seed, first + k, this->Ids[static_cast<std::size_t>(i)]);
       }
     });
-  if (this->MassDifference.rows() > 0)
-  {
-    this->CorrelateNoise(fields);
-  }
   this->Operator->ForgetResiduals();
   this->Operator->Apply(fields, progress);
   const bool isScaled = this->RelativeDeviations.size() > 0;

@@ -16,9 +16,7 @@ namespace SurfaceDiffusion
 enum class FieldCovariance
 {
   /// White noise after the heat equation, exp(-t L) W: on the plane the correlation at distance r is
-  /// exp(-r^2 / (8 t)). L = B^-1 K with the mixed masses of MixedMass.h, and W has the covariance
-  /// (1 + h^2/16 L)^-1 B^-1, which is M^-1 on an even lattice of edges h but for terms of h^4: the
-  /// width is right from two edges on.
+  /// exp(-r^2 / (8 t)).
   Gaussian,
   /// The solution of (kappa^2 + L)^(alpha/2) u = W with alpha = nu + 1, for nu = 1 and 3: on the
   /// plane the correlation is that of Matern's class, (kappa r)^nu K_nu(kappa r) / (2^(nu-1)
@@ -26,8 +24,8 @@ enum class FieldCovariance
   Matern
 };
 
-/// Gaussian random fields on a surface, of mean 0. Of Matern L = M^-1 K with lumped masses, and white
-/// noise W is independent at the vertices with the variances 1 / A_i. Fields are divided by their standard
+/// Gaussian random fields on a surface, of mean 0: L = M^-1 K with lumped masses, and white noise W,
+/// independent at the vertices with the variances 1 / A_i. Fields are divided by their standard
 /// deviation on the plane, which that on surfaces exceeds near boundaries (by sqrt(2) on a straight
 /// one, where there is no flux) and where the surface is small beside the correlation; or by that
 /// at each vertex, which makes it 1 everywhere.
@@ -64,15 +62,12 @@ public:
   double MissedResidual() const { return this->Operator->MissedResidual(); }
 
 private:
-  void CorrelateNoise(Values& noise) const;
-
   std::shared_ptr<const Assembler> Assembly;
   const ParallelFor& Parallel;
   std::vector<std::int64_t> Ids;
   double DeviationOnPlane = 1.0;
   Vector RelativeDeviations;
   std::optional<ResolventPolynomial> Operator;
-  SparseMatrix MassDifference; ///< B - M of Gaussian
 };
 
 } // namespace SurfaceDiffusion

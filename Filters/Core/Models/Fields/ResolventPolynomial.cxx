@@ -4,7 +4,6 @@
 
 #include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Resize.h"
-#include "Core/Operators/MixedMass.h"
 #include "Core/Solvers/SolverChoice.h"
 
 #include <algorithm>
@@ -64,23 +63,14 @@ std::unique_ptr<LinearSolver> MakeResolventSolver(const TriangleMesh& mesh, doub
 
 ResolventPolynomial::ResolventPolynomial(std::shared_ptr<const Assembler> assembler,
   const CornerWeights& coefficients, double step, std::vector<double> series,
-  std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel, bool hasMixedMass)
+  std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
   : Assembly(std::move(assembler))
   , Parallel(parallel)
   , Series(std::move(series))
   , System(this->Assembly, std::move(solver), parallel)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  if (hasMixedMass)
-  {
-    this->MassDifference = MixedMinusLumped(*this->Assembly, parallel);
-    this->System.Assemble(
-      mesh.ControlAreas(), 1.0, WithMixedMass(mesh, step, coefficients, parallel));
-  }
-  else
-  {
-    this->System.Assemble(mesh.ControlAreas(), step, coefficients);
-  }
+  this->System.Assemble(mesh.ControlAreas(), step, coefficients);
   this->Balanced = MeanCorrection(
     mesh, mesh.ControlAreas(), Flags::Constant(mesh.NumberOfVertices(), false), parallel);
 }
@@ -147,12 +137,6 @@ void ResolventPolynomial::Solve(const Values& b, Values& x, const ProgressMonito
   Resize(this->RightHandSide, b.rows(), b.cols());
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i) { this->RightHandSide.row(i) = mesh.ControlAreas()[i] * b.row(i); });
-  if (this->MassDifference.rows() > 0)
-  {
-    Resize(this->Product, b.rows(), b.cols());
-    Multiply(this->MassDifference, b, this->Product, this->Parallel);
-    this->RightHandSide += this->Product;
-  }
   x = b;
   this->System.Solve(this->RightHandSide, x, this->Report, progress);
   this->Balanced.Restore(mesh, this->RightHandSide, x, this->Parallel);

@@ -29,7 +29,7 @@ std::unique_ptr<LinearSolver> MakeResolventSolver(const TriangleMesh& mesh, doub
 ///   Y = (1 + s L)^-1 = (M + s K)^-1 M,
 /// which is one step of backward Euler. For an eigenvalue lambda of L that of Y is
 /// y = 1 / (1 + s lambda), in (0, 1], so that p stands for the function p(1 / (1 + s lambda)). All
-/// solves share one matrix. Or with the mixed mass matrix B of MixedMass.h in place of M. Analytic functions need few of them: exp(-t L) to 2e-5 in 10 (rational
+/// solves share one matrix. Analytic functions need few of them: exp(-t L) to 2e-5 in 10 (rational
 /// approximation with one pole, S. Norsett, SIAM J. Numer. Anal. 15, 1978; T. Goeckler, V. Grimm,
 /// SIAM J. Numer. Anal. 51, 2013).
 ///
@@ -38,10 +38,10 @@ class ResolventPolynomial
 {
 public:
   /// coefficients: of K, see CotanWeights.h. step: s > 0, in the units of the mesh. series: of p,
-  /// of degree 1 or more. hasMixedMass: L = B^-1 K.
+  /// of degree 1 or more.
   ResolventPolynomial(std::shared_ptr<const Assembler> assembler, const CornerWeights& coefficients,
     double step, std::vector<double> series, std::shared_ptr<LinearSolver> solver,
-    const ParallelFor& parallel = SerialFor(), bool hasMixedMass = false);
+    const ParallelFor& parallel = SerialFor());
 
   /// u becomes p(Y) u. No bit of a column depends on the others. Throws NotConverged and Aborted.
   void Apply(Values& u, const ProgressMonitor& progress = ProgressMonitor());
@@ -58,11 +58,10 @@ private:
   const ParallelFor& Parallel;
   std::vector<double> Series;
   ImplicitSystem System;
-  SparseMatrix MassDifference; ///< B - M; no rows with M
   MeanCorrection Balanced;
   StepReport Report;
   bool IsPrepared = false;
-  Values RightHandSide, Product;
+  Values RightHandSide;
 };
 
 } // namespace SurfaceDiffusion
