@@ -18,9 +18,7 @@
  * The boundary condition is the homogeneous Neumann condition. The fields serve as rough textures,
  * as noise with a width, and as maps without a relation to others.
  *
- * **Scheme.** Of Gaussian, B = (M + C)/2 with the consistent mass matrix C stands in place of M, and W
- * has the covariance (1 + h^2/16 L)^-1 B^-1, which is M^-1 on an even lattice: the width is the one
- * asked for to 6 % at 2 h, and to 3 % from 3 h on. exp(-t L) is a polynomial of degree 10 in one step of backward Euler, to 2e-5; Matern's
+ * **Scheme.** exp(-t L) is a polynomial of degree 10 in one step of backward Euler, to 2e-5; Matern's
  * fields take one and two solves. With Normalize, the standard deviation of the discrete field at
  * each point is found by selected inversion of up to 10 sparse factors, to 4e-4, and the variance is
  * 1 everywhere. Otherwise it is that on the plane, which the field exceeds near boundaries (by

@@ -52,8 +52,7 @@ def random_field(
     """Draw Gaussian random fields on a surface, of mean 0 and variance 1.
 
     With the matrices M of :func:`mass_matrix` and K of :func:`stiffness_matrix`, L = M^-1 K, and white
-    noise W, independent at the points with variances 1 / A_i of their control areas (of `fwhm` nearly,
-    and with the mean of M and of the consistent mass matrix in place of M), they are
+    noise W, independent at the points with variances 1 / A_i of their control areas, they are
 
         exp(-t L) W,  t = fwhm^2 / (16 ln 2), or
         (kappa^2 + L)^(-(nu + 1) / 2) W,  kappa = sqrt(8 nu) / range,

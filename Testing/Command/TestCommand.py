@@ -165,8 +165,8 @@ class Smooth(CommandTest):
         samples.write_gifti("areas.func.gii", {"areas": 4 * areas})
         samples.write_surface("large.surf.gii", 2 * POINTS)
         for word in ("--areas", "-corrected-areas"):
-            self.succeed(f"smooth lh.surf.gii lh.func.gii 8 a.func.gii {word} areas.func.gii")
-            self.succeed("smooth large.surf.gii lh.func.gii 8 b.func.gii")
+            self.succeed(f"smooth lh.surf.gii lh.func.gii 12 a.func.gii {word} areas.func.gii")
+            self.succeed("smooth large.surf.gii lh.func.gii 12 b.func.gii")
             np.testing.assert_allclose(self.column("a.func.gii"), self.column("b.func.gii"), 1e-5)
 
     def test_the_integral_with_given_areas_is_kept(self):

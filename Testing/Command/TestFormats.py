@@ -641,7 +641,7 @@ class GIFTI(FormatTest):
             np.testing.assert_array_equal(surface.faces, FACES)
             np.testing.assert_array_equal(data.parts[0].values[:, 0], NOISE)
         surface.save("b.gii", 2 * surface.points)
-        self.succeed("smooth", "b.gii", "a.gii", 5, "c.gii")
+        self.succeed("smooth", "b.gii", "a.gii", 10, "c.gii")
         os.unlink("a.dat")
         self.write("a.dat", b"short")
         np.testing.assert_array_equal(read_surface("b.gii").points, 2 * surface.points)

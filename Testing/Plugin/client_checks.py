@@ -31,7 +31,7 @@ RESULTS = {
     "SurfaceDirectionFieldFilter": (("CELLS", "Direction"), 0.881553, ("POINTS", "f")),
     "SurfaceDistanceFilter": (("POINTS", "Distance"), 0.511944, ("POINTS", "Distance")),
     "SurfaceInterpolationFilter": (("POINTS", "fInterpolated"), 0.692164, ("POINTS", "fInterpolated")),
-    "SurfaceRandomFieldFilter": (("POINTS", "RandomField"), 0.875335491, ("POINTS", "RandomField")),
+    "SurfaceRandomFieldFilter": (("POINTS", "RandomField"), 0.875830508, ("POINTS", "RandomField")),
     "SurfaceReliefFilter": (("POINTS", "ReliefHeight"), 0.00321144, ("POINTS", "f")),
     "SurfaceSegmentationFilter": (("POINTS", "RegionProbability"), 0.706920, ("POINTS", "RegionId")),
     "TensorDiffusionFilter": (("POINTS", "fBeltrami"), 0.0826594, ("POINTS", "fBeltrami")),
