@@ -188,11 +188,13 @@ TEST(RunWarnings, WidthsInAnotherUnitThanTheCoordinatesAreReported)
 {
   const RunInput input = NoisyNormals(); // of radius 1, with edges of 0.15
   HeatSettings heat;
-  for (const double good : { 0.05, 0.4, 3.0 })
+  for (const double good : { 0.24, 0.4, 3.0 })
   {
     heat.FWHM = good;
     EXPECT_TRUE(WarningsOf(input, heat).empty()) << good;
   }
+  heat.FWHM = 0.21;
+  ExpectOne(WarningsOf(input, heat), { "FWHM is 0.21, below 1.5 mean edge lengths of 0.15" });
   heat.FWHM = 1e-3;
   ExpectOne(WarningsOf(input, heat), { "FWHM is 0.001", "the mean edge length, 0.15" });
   heat.FWHM = 1e3;
