@@ -96,7 +96,8 @@ Surface EvenLattice(Index cells)
 
 Eigen::MatrixXd Mixed(const Assembler& assembler)
 {
-  Eigen::MatrixXd mass = Eigen::MatrixXd(MixedMinusLumped(assembler));
+  Eigen::MatrixXd mass =
+    Eigen::MatrixXd(MixedMinusLumped(assembler, MixedMassWeights(assembler.Mesh())));
   mass.diagonal() += assembler.Mesh().ControlAreas();
   return mass;
 }
@@ -118,7 +119,7 @@ TEST(MixedMass, IsTheMeanOfTheLumpedAndTheConsistentMassMatrix)
   }
 }
 
-// Whatever areas are given.
+// For any given areas.
 TEST(MixedMass, IsBetweenFiveEighthsOfTheLumpedOneAndItself)
 {
   const Surface s = JitteredSphere(2, 0.45);

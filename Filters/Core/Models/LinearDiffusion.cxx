@@ -80,18 +80,16 @@ void LinearDiffusion::Prepare(const ProgressMonitor& progress)
   ForEach(this->Parallel, mesh.NumberOfVertices(),
     [&](Index i)
     { diagonal[i] = mesh.ControlAreas()[i] * (inertia + scale * this->Fit.Weight(i)); });
-  const auto assemble = [&](const CornerWeights& coefficients)
+  CornerWeights coefficients =
+    this->Coefficients.rows() > 0 ? this->Coefficients : CotanWeights(mesh, this->Parallel);
+  if (this->Options.HasMixedMass && inertia > 0.0)
   {
-    if (this->Options.HasMixedMass && inertia > 0.0)
-    {
-      this->MassDifference = MixedMinusLumped(*this->Assembly, this->Parallel);
-      this->System.Assemble(
-        diagonal, 1.0, WithMixedMass(mesh, scale, coefficients, this->Parallel));
-      return;
-    }
-    this->System.Assemble(diagonal, scale, coefficients);
-  };
-  assemble(this->Coefficients.rows() > 0 ? this->Coefficients : CotanWeights(mesh, this->Parallel));
+    const CornerWeights mass = MixedMassWeights(mesh, this->Parallel);
+    this->MassDifference = MixedMinusLumped(*this->Assembly, mass, this->Parallel);
+    coefficients = scale * coefficients + mass;
+    scale = 1.0;
+  }
+  this->System.Assemble(diagonal, scale, coefficients);
   if (this->Data.Fixed.any())
   {
     this->System.Constrain(this->Data.Fixed, this->Data.Start.rowwise() - this->Panel.Means());

@@ -7,8 +7,7 @@
 namespace SurfaceDiffusion
 {
 
-CornerWeights WithMixedMass(const TriangleMesh& mesh, double scale,
-  const CornerWeights& coefficients, const ParallelFor& parallel)
+CornerWeights MixedMassWeights(const TriangleMesh& mesh, const ParallelFor& parallel)
 {
   Vector shares(mesh.NumberOfVertices());
   ForEach(parallel, mesh.NumberOfVertices(),
@@ -17,26 +16,24 @@ CornerWeights WithMixedMass(const TriangleMesh& mesh, double scale,
       const double thirds = mesh.ThirdOfTriangles(i);
       shares[i] = thirds > 0.0 ? mesh.ControlAreas()[i] / thirds : 0.0;
     });
-  CornerWeights joined(mesh.NumberOfTriangles(), 3);
+  CornerWeights weights(mesh.NumberOfTriangles(), 3);
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
       const auto corners = mesh.TriangleVertices().row(t);
       const double share = std::min({ shares[corners[0]], shares[corners[1]], shares[corners[2]] });
-      const double mass = share * mesh.Shapes()[t].Area() / 24.0;
-      joined.row(t) = scale * coefficients.row(t).array() - mass;
+      weights.row(t).setConstant(-share * mesh.Shapes()[t].Area() / 24.0);
     });
-  return joined;
+  return weights;
 }
 
-SparseMatrix MixedMinusLumped(const Assembler& assembler, const ParallelFor& parallel)
+SparseMatrix MixedMinusLumped(
+  const Assembler& assembler, const CornerWeights& weights, const ParallelFor& parallel)
 {
-  const TriangleMesh& mesh = assembler.Mesh();
   SparseMatrix difference;
   assembler.TakePattern(difference, parallel);
-  assembler.Fill(difference, Vector::Zero(mesh.NumberOfVertices()), 1.0,
-    WithMixedMass(mesh, 0.0, CornerWeights::Zero(mesh.NumberOfTriangles(), 3), parallel), nullptr,
-    parallel);
+  assembler.Fill(
+    difference, Vector::Zero(assembler.Mesh().NumberOfVertices()), 1.0, weights, nullptr, parallel);
   return difference;
 }
 

@@ -20,12 +20,11 @@ namespace SurfaceDiffusion
 /// thirds of triangles, as of intrinsic triangulations and given areas, each triangle counts by the
 /// smallest ratio of A_i to these thirds at its corners: 5/8 M <= B <= M on any surface.
 
-/// scale c - w: Assembler makes diag(d) + scale K_c + B - M of d and these coefficients.
-CornerWeights WithMixedMass(const TriangleMesh& mesh, double scale,
-  const CornerWeights& coefficients, const ParallelFor& parallel = SerialFor());
+/// The coefficients c = -w of which Assembler makes B - M.
+CornerWeights MixedMassWeights(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor());
 
-/// B - M, of the pattern of `assembler`.
-SparseMatrix MixedMinusLumped(
-  const Assembler& assembler, const ParallelFor& parallel = SerialFor());
+/// B - M of these, of the pattern of `assembler`.
+SparseMatrix MixedMinusLumped(const Assembler& assembler, const CornerWeights& weights,
+  const ParallelFor& parallel = SerialFor());
 
 } // namespace SurfaceDiffusion
