@@ -90,6 +90,19 @@ TEST(NoiseLevel, IsZeroWhereNothingCanBeSaid)
   EXPECT_EQ(EstimateNoise(*empty, Points(0, 3), PointData::FromValues(Values(0, 1))).Level(), 0.0);
 }
 
+// The three others around a corner of a tetrahedron determine no linear fit.
+TEST(NoiseLevel, IsUndeterminedWithFactorsWhereNoPlacesDetermineAFit)
+{
+  const Surface s = Tetrahedron();
+  const auto assembler = MakeAssembler(s);
+  PointData data = PointData::FromValues(Values(Vector::LinSpaced(4, 0.0, 1.0)));
+  data.FidelityFactors = Vector::LinSpaced(4, 1.0, 2.0);
+  const NoiseEstimate found =
+    EstimateNoise(*assembler, assembler->Pattern(), s.Vertices, data, { 0, 4 }, true);
+  EXPECT_EQ(found.Level(), 0.0);
+  EXPECT_TRUE(found.IsUndetermined);
+}
+
 TEST(NoiseLevel, DiscrepancyIsTheWeightedRootMeanSquareOfWhatIsKnown)
 {
   const auto mesh = MakeMesh(Icosphere(2));
