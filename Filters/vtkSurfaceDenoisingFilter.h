@@ -6,7 +6,8 @@
  *
  * The points move so that the triangles become orthogonal to regularised normals. Connectivity and
  * arrays stay. All weights follow from the noise level, which is estimated unless it is given, so
- * that no setting is necessary.
+ * that no setting is necessary. Spikes, single points farther than 5 radii of the ring of their
+ * neighbours from its middle, are moved there first; a warning counts them.
  *
  * The method alternates two steps. With the normals n0_f, the areas a_f and the centroids c_f of the
  * triangles of the present surface, the first finds regular normals n_f, the directions of

@@ -313,8 +313,9 @@ def heat(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> NDArray[
     -----
     The discretisation is the finite volume method of Wu, Deng and Chen (IEEE TVCG 14(3), 2008) with
     the lumped mass matrix and the cotan weights; with `fwhm` the mean of the lumped and the consistent
-    mass matrix, so that white noise gets the width to 5 % from 2 mean edge lengths on. Times and weights are by default in natural units:
-    lengths in the mean edge length h, values in their range R. `fwhm` is in coordinate units. One of
+    mass matrix, so that white noise gets the width to 5 % from 2 mean edge lengths on. Times and weights
+    are by default in natural units: lengths in the mean edge length h, values in their range R. `fwhm` is
+    in coordinate units. One of
     `fwhm`, `time_step` and `mode` has to be given, since a default width would depend on the mesh; two
     of them are an error, and so are other settings of which one takes the place of another.
 
@@ -323,8 +324,8 @@ def heat(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> NDArray[
     ``number_of_time_steps=1`` is the fastest and nearly the most accurate, as ``surfacediffusion smooth``
     takes: it solves 6 systems in place of 60, and its error in time is 0.5 % (L2) for white noise of
     any width (1 % for data at faces). Values may leave the range of the data by 5e-4 of it, by up to 0.6 %
-    of single peaks at widths of 1.5 edges, and by more at obtuse angles of boundaries. Another integrator with fewer than 4 steps misses the width,
-    with a warning.
+    of single peaks at widths of 1.5 edges, and by more at obtuse angles of boundaries. Another integrator
+    with fewer than 4 steps misses the width, with a warning.
 
     More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
     in double precision does not grow with their number. This does not hold with `automatic_fidelity`,
@@ -577,7 +578,8 @@ def denoise_mesh(
     distinguished from the shape stays unless `noise_level` is given: that of components with less than 200 points, and
     of those with more than a quarter of the edges within flat faces. A surface whose estimated noise is
     0 stays as it is. Faces may be oriented at random, and the numbering of points and faces
-    does not matter.
+    does not matter. Single points farther than 5 radii of the ring of their neighbours from its middle are
+    moved there first, and counted in a warning.
 
     Parameters
     ----------

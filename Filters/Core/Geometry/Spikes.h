@@ -12,7 +12,7 @@ namespace SurfaceDiffusion
 
 /// Vertices far outside of their neighbours, as a scanner leaves them, with the places that they should
 /// have. A vertex of a surface is within its ring: no farther from the mean c of its neighbours than
-/// the farthest of them is, r, whatever the lengths of the edges are. A spike is more than 5 r from c.
+/// the farthest of them is, r, for edges of any lengths. A spike is more than 5 r from c.
 /// So may be the tip of a cone, which differs in this: the ring of a spike is no larger than 1.5 times
 /// the upper quartile of the edges around it, and most of its vertices have neighbours beyond them, which
 /// a tip without a surface around it has not. The place is c. A spike that has another one for a
