@@ -17,6 +17,7 @@ import warnings
 import xml.etree.ElementTree as tree
 import zlib
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import samples
@@ -24,6 +25,7 @@ from samples import FACES, N, NOISE, POINTS, SMOOTH, nib, run
 from TestFormats import FormatTest, stl_text
 
 from surfacediffusion.files import FileError, read_data, read_surface
+from surfacediffusion.files.content import write_atomically
 
 MEMORY = 4 << 30
 
@@ -197,6 +199,18 @@ class CIFTI(ForeignTest):
 
 
 class Signals(ForeignTest):
+    def test_an_interruption_as_the_temporary_file_comes_to_be_leaves_none(self):
+        created = os.open
+
+        def create(*arguments):
+            os.close(created(*arguments))
+            self.assertEqual(len(os.listdir()), 1)
+            raise KeyboardInterrupt
+
+        with mock.patch("os.open", create), self.assertRaises(KeyboardInterrupt):
+            write_atomically("a.txt", b"")
+        self.assertEqual(os.listdir(), [])
+
     @unittest.skipUnless(hasattr(signal, "SIGHUP"), "needs signals")
     def test_a_run_that_is_ended_takes_its_temporary_file_away(self):
         samples.write_surface("l.surf.gii", *samples.sphere(5))

@@ -9,6 +9,7 @@ import importlib
 import logging
 import os
 import re
+import secrets
 import stat
 import struct
 import tempfile
@@ -344,11 +345,11 @@ def writing_atomically(path):
     check_output_folder(path)
     # A link is followed, and keeps being a link.
     target = os.path.realpath(path)
-    temporary = None
+    # The name is there before the file, so that an interruption between the two leaves no file behind.
+    temporary = os.path.join(os.path.dirname(target),
+                             f".{os.path.basename(target)[:40]}.{secrets.token_hex(8)}")
     try:
-        handle, temporary = tempfile.mkstemp(
-            dir=os.path.dirname(target), prefix="." + os.path.basename(target)[:40] + ".")
-        with open(handle, "rb") as file:
+        with open(os.open(temporary, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600), "rb") as file:
             yield temporary
             os.fsync(file.fileno())
         os.chmod(temporary, _permissions(target))
@@ -356,7 +357,7 @@ def writing_atomically(path):
     except OSError as error:
         raise FileError(f"{path}: cannot be written: {error.strerror}") from error
     finally:
-        if temporary is not None and os.path.exists(temporary):
+        with contextlib.suppress(OSError):
             os.unlink(temporary)
 
 
