@@ -7,6 +7,8 @@
 #include "Core/Statistics/MeasuredVertices.h"
 #include "Core/Statistics/NoiseCorrelation.h"
 #include "Core/Statistics/NoiseLevel.h"
+#include "Core/Statistics/UnbiasedRisk.h"
+#include "Core/Statistics/WeightSearch.h"
 #include "Run/CorrelatedNoise.h"
 #include "Run/DataPreparation.h"
 
@@ -88,16 +90,16 @@ public:
   bool IsDone() const
   {
     return std::all_of(this->Parts.begin(), this->Parts.end(),
-      [](const Part& part) { return part.Search.IsDone(); });
+      [](const Part& part) { return part.Search->IsDone(); });
   }
-  /// Compare the state of a model of the trial weights with the data.
+  /// Compare the states of models of the trial weights with the data.
   void Advance(const FidelityModelMaker& makeModel);
   void WarnIfNotFound(Notes& notes) const;
 
   /// That of the largest component; the start on a surface without triangles.
   double Weight() const
   {
-    return this->Parts.empty() ? this->Task.Start : this->Parts.front().Search.Trial();
+    return this->Parts.empty() ? this->Task.Start : this->Parts.front().Search->Trial();
   }
   /// The weights over that of the largest component, per vertex; no entry if there is one.
   Vector Factors() const;
@@ -107,14 +109,24 @@ private:
   {
     VertexRange Vertices;
     double Noise;
-    DiscrepancySearch Search;
+    std::unique_ptr<WeightSearch> Search;
   };
 
   bool HasComparedValues(VertexRange range) const;
   NoiseEstimate Estimate(VertexRange range, Notes& notes);
-  double FindNoise(VertexRange range, Notes& notes);
+  struct Noise
+  {
+    double Level = 0.0;
+    bool IsWhite = true;
+  };
+  Noise FindNoise(VertexRange range, Notes& notes);
+  double TypicalFactor(VertexRange range) const;
   void LeaveOutConstantParts(VertexRange range);
   void NoteSmoothData(double estimate, Notes& notes) const;
+  std::unique_ptr<WeightSearch> MakeSearch(VertexRange range, const Noise& noise) const;
+  /// The states that the models of the trial weights make of the data.
+  Values Predict(PointData data, const FidelityModelMaker& makeModel) const;
+  PointData Perturbed() const;
 
   const ModelInputs& Inputs;
   const FidelityTask& Task;
@@ -123,6 +135,7 @@ private:
   std::vector<Part> Parts; ///< connected components, the largest first
   std::optional<NoiseEstimate> OfAll; ///< for components of too few points
   PointData Compared; ///< the measured data that the result has to differ from by the noise
+  Values Direction; ///< of the risk, see RiskDirection(); no rows if no part needs it
 };
 
 ColumnSearch::ColumnSearch(
@@ -144,20 +157,56 @@ ColumnSearch::ColumnSearch(
     const VertexRange range = rangeOf(c);
     if (order.size() > 1 && !this->HasComparedValues(range))
     {
-      this->Parts.push_back({ range, 0.0, DiscrepancySearch(task.Start) });
+      this->Parts.push_back({ range, 0.0, std::make_unique<KnownWeight>(task.Start) });
       continue;
     }
-    const double noise = this->FindNoise(range, notes);
-    this->Parts.push_back({ range, noise, { noise, task.Start } });
-    if (noise > 0.0)
+    const Noise noise = this->FindNoise(range, notes);
+    this->Parts.push_back({ range, noise.Level, this->MakeSearch(range, noise) });
+    if (noise.Level > 0.0)
     {
       this->LeaveOutConstantParts(range);
     }
-    else
+    if (this->Parts.back().Search->NeedsRisk())
     {
-      this->Parts.back().Search = DiscrepancySearch(WeightWithoutNoise * task.Start);
+      if (this->Direction.rows() == 0)
+      {
+        this->Direction = Values::Zero(this->Data.Given.rows(), this->Data.Given.cols());
+      }
+      this->Direction += RiskDirection(
+        inputs.Surface.Mesh(), this->Pattern, inputs.Surface.Points(), this->Compared, range);
     }
   }
+}
+
+/// The unbiased risk is that of white noise. Other noise is left by the discrepancy principle.
+std::unique_ptr<WeightSearch> ColumnSearch::MakeSearch(VertexRange range, const Noise& noise) const
+{
+  if (noise.Level == 0.0)
+  {
+    return std::make_unique<KnownWeight>(WeightWithoutNoise * this->Task.Start);
+  }
+  const double start = this->Task.Start / this->TypicalFactor(range);
+  if (noise.IsWhite && this->Task.HasRisk)
+  {
+    return std::make_unique<RiskSearch>(noise.Level, start);
+  }
+  return std::make_unique<DiscrepancySearch>(noise.Level, start);
+}
+
+/// The median of the fidelity factors that are not 0.
+double ColumnSearch::TypicalFactor(VertexRange range) const
+{
+  std::vector<double> factors;
+  for (Index i = range.Begin; i < range.End; ++i)
+  {
+    if (const double factor = this->Data.FidelityFactor(i); factor > 0.0)
+    {
+      factors.push_back(factor);
+    }
+  }
+  const auto middle = factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2);
+  std::nth_element(factors.begin(), middle, factors.end());
+  return factors.empty() ? 1.0 : *middle;
 }
 
 /// Whether a value of a weight other than 0 may change. Elsewhere all weights give the same.
@@ -188,7 +237,7 @@ NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
     found = *this->OfAll;
   }
   const double unit = this->Inputs.Units.ValueUnit;
-  if (!this->Inputs.Cells && found.IsCorrelated())
+  if (this->Task.NoiseLevel == 0.0 && !this->Inputs.Cells && found.IsCorrelated())
   {
     notes.Add(Notes::Correlated,
       Sentence("the noise is correlated: its standard deviation is ")
@@ -199,26 +248,25 @@ NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
   return found;
 }
 
-double ColumnSearch::FindNoise(VertexRange range, Notes& notes)
+ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
 {
-  NoiseEstimate estimate;
-  double noise = NoiseAtVertices(this->Inputs, this->Task.NoiseLevel);
-  if (this->Task.NoiseLevel == 0.0)
+  const bool isGiven = this->Task.NoiseLevel > 0.0;
+  const NoiseEstimate estimate = this->Estimate(range, notes);
+  const double between =
+    estimate.BetweenNeighbours * (this->Inputs.Cells ? this->Task.CellNoiseGain : 1.0);
+  const double estimated = this->Inputs.Cells ? between : estimate.Level();
+  if (!isGiven && !this->Inputs.Cells && !estimate.IsCorrelated() && this->Parts.empty())
   {
-    estimate = this->Estimate(range, notes);
-    noise =
-      this->Inputs.Cells ? estimate.BetweenNeighbours * this->Task.CellNoiseGain : estimate.Level();
-    if (!this->Inputs.Cells && !estimate.IsCorrelated() && this->Parts.empty())
-    {
-      this->NoteSmoothData(this->Data.FidelityFactors.size() > 0
-          ? EstimateNoise(*this->Inputs.Surface.SharedAssembler(), this->Pattern,
-              this->Inputs.Surface.Points(), this->Data, range)
-              .BetweenNeighbours
-          : noise,
-        notes);
-    }
+    this->NoteSmoothData(this->Data.FidelityFactors.size() > 0
+        ? EstimateNoise(*this->Inputs.Surface.SharedAssembler(), this->Pattern,
+            this->Inputs.Surface.Points(), this->Data, range)
+            .BetweenNeighbours
+        : estimated,
+      notes);
   }
-  if (noise == 0.0)
+  const double level =
+    isGiven ? NoiseAtVertices(this->Inputs, this->Task.NoiseLevel) : estimated;
+  if (level == 0.0)
   {
     Sentence text = Word::Setting("AutomaticFidelity");
     text
@@ -229,7 +277,9 @@ double ColumnSearch::FindNoise(VertexRange range, Notes& notes)
       << " (to set the standard deviation of the noise, use " << Word::Setting("NoiseLevel") << ")";
     notes.Add(estimate.IsUndetermined ? Notes::Undetermined : Notes::WithoutNoise, text);
   }
-  return noise;
+  // Noise of more than the differences between neighbours is not white.
+  const bool isWhite = estimate.IsUndetermined || level <= NoiseEstimate::CorrelatedGrowth * between;
+  return { level, isWhite && !this->Inputs.Cells };
 }
 
 /// The estimate of noise between neighbours is that of white noise. A note if there is none.
@@ -272,15 +322,14 @@ Vector ColumnSearch::Factors() const
     for (const Part& part : this->Parts)
     {
       factors.segment(part.Vertices.Begin, part.Vertices.Size())
-        .setConstant(part.Noise == 0.0 && canHold ? Held : part.Search.Trial() / this->Weight());
+        .setConstant(part.Noise == 0.0 && canHold ? Held : part.Search->Trial() / this->Weight());
     }
   }
   return factors;
 }
 
-void ColumnSearch::Advance(const FidelityModelMaker& makeModel)
+Values ColumnSearch::Predict(PointData data, const FidelityModelMaker& makeModel) const
 {
-  PointData data = this->Data;
   const Vector factors = this->Factors();
   if (factors.size() > 0)
   {
@@ -297,12 +346,41 @@ void ColumnSearch::Advance(const FidelityModelMaker& makeModel)
     StepReport unused;
     this->Task.Blur->Apply(predicted, unused);
   }
+  return predicted;
+}
+
+PointData ColumnSearch::Perturbed() const
+{
+  PointData data = this->Data;
+  for (const Part& part : this->Parts)
+  {
+    const auto rows = Eigen::seqN(part.Vertices.Begin, part.Vertices.Size());
+    const Values change = part.Noise * this->Direction(rows, Eigen::all);
+    data.Given(rows, Eigen::all) += change;
+    data.Start(rows, Eigen::all) += change;
+  }
+  return data;
+}
+
+void ColumnSearch::Advance(const FidelityModelMaker& makeModel)
+{
+  const Values predicted = this->Predict(this->Data, makeModel);
+  const bool needsRisk = std::any_of(this->Parts.begin(), this->Parts.end(), [](const Part& part)
+    { return !part.Search->IsDone() && part.Search->NeedsRisk(); });
+  const Values perturbed =
+    needsRisk ? this->Predict(this->Perturbed(), makeModel) : Values();
+  const TriangleMesh& mesh = this->Inputs.Surface.Mesh();
   for (Part& part : this->Parts)
   {
-    if (!part.Search.IsDone())
+    if (!part.Search->IsDone())
     {
-      part.Search.Take(
-        Discrepancy(this->Inputs.Surface.Mesh(), this->Compared, predicted, part.Vertices));
+      WeightTrial trial{ Discrepancy(mesh, this->Compared, predicted, part.Vertices) };
+      if (part.Search->NeedsRisk())
+      {
+        trial.Risk = UnbiasedRisk(mesh, this->Compared, predicted, perturbed, this->Direction,
+          part.Noise, part.Vertices);
+      }
+      part.Search->Take(trial);
     }
   }
 }
@@ -312,7 +390,7 @@ void ColumnSearch::WarnIfNotFound(Notes& notes) const
   const double unit = this->Inputs.Units.ValueUnit;
   for (const Part& part : this->Parts)
   {
-    const FidelityChoice found = part.Search.Found();
+    const FidelityChoice found = part.Search->Found();
     if (!found.IsFound)
     {
       notes.Add(Notes::NotFound,

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Statistics/NoiseLevel.h"
+#include "Core/Statistics/WeightSearch.h"
 #include "Heat.h"
 #include "Meshes.h"
 

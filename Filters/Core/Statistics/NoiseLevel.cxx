@@ -161,7 +161,7 @@ NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pat
   for (int edges = 2; edges <= FarthestRing && apart > 0.0; edges *= 2)
   {
     const double next = EstimateAt(edges, data, factors, count);
-    if (next <= 1.15 * apart)
+    if (next <= NoiseEstimate::CorrelatedGrowth * apart)
     {
       estimate.Apart = apart;
       return estimate;
@@ -238,84 +238,6 @@ double Discrepancy(
     }
   }
   return area > 0.0 ? std::sqrt(sum / (area * static_cast<double>(u.cols()))) : 0.0;
-}
-
-DiscrepancySearch::DiscrepancySearch(double noiseLevel, double start)
-  : Noise(noiseLevel)
-  , Origin(std::log(start))
-  , X(this->Origin)
-{
-}
-
-DiscrepancySearch::DiscrepancySearch(double weight)
-  : DiscrepancySearch(0.0, weight)
-{
-  this->Phase = Done;
-}
-
-void DiscrepancySearch::Take(double discrepancy)
-{
-  const double f = discrepancy - this->Noise;
-  switch (this->Phase)
-  {
-    case Start:
-      this->FA = f;
-      this->A = this->X;
-      this->Stride = f > 0.0 ? std::log(4.0) : -std::log(4.0);
-      this->Phase = Bracketing;
-      break;
-    case Inside:
-      if (f * this->FB <= 0.0)
-      {
-        this->A = this->B;
-        this->FA = this->FB;
-      }
-      else
-      {
-        this->FA *= 0.5; // the same end twice: pull the other one in
-      }
-      this->IsClose = std::abs(this->X - this->B) < 0.01 || f == 0.0;
-      break;
-    default:
-      break;
-  }
-  this->B = this->X;
-  this->FB = f;
-  this->FindNext();
-}
-
-void DiscrepancySearch::FindNext()
-{
-  if (this->Phase == Bracketing && this->FA * this->FB > 0.0)
-  {
-    this->HasRoot = std::abs(this->B - this->Origin) <= std::log(1e8);
-    this->A = this->B;
-    this->FA = this->FB;
-    if (this->HasRoot)
-    {
-      this->X = this->B + this->Stride;
-      return;
-    }
-  }
-  else if (!this->IsClose && std::abs(this->B - this->A) > 0.01 && this->FA != this->FB)
-  {
-    this->Phase = Inside;
-    this->X = (this->A * this->FB - this->B * this->FA) / (this->FB - this->FA);
-    return;
-  }
-  this->Phase = Done;
-  this->X = this->B;
-}
-
-FidelityChoice FindFidelityByDiscrepancy(
-  const std::function<double(double)>& discrepancy, double noiseLevel, double start)
-{
-  DiscrepancySearch search(noiseLevel, start);
-  while (!search.IsDone())
-  {
-    search.Take(discrepancy(search.Trial()));
-  }
-  return search.Found();
 }
 
 } // namespace SurfaceDiffusion

@@ -6,7 +6,6 @@
 #include "Core/Operators/Rings.h"
 #include "Core/Surface/PointData.h"
 
-#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -23,7 +22,8 @@ struct NoiseEstimate
 
   /// White noise has the same deviation at all distances. The differences of correlated noise, of
   /// data that were interpolated or smoothed, are larger at larger distances.
-  bool IsCorrelated() const { return this->Apart > 1.15 * this->BetweenNeighbours; }
+  static constexpr double CorrelatedGrowth = 1.15;
+  bool IsCorrelated() const { return this->Apart > CorrelatedGrowth * this->BetweenNeighbours; }
   double Level() const { return this->IsCorrelated() ? this->Apart : this->BetweenNeighbours; }
 };
 
@@ -68,53 +68,6 @@ NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pat
 double ExpectedEstimate(const Assembler& assembler, const Eigen::Ref<const Points>& points,
   const PointData& data,
   const std::function<double(const std::vector<Index>&, const Vector&)>& deviationOf);
-
-/// A fidelity weight, and the root mean square of u - f that it leaves.
-struct FidelityChoice
-{
-  double Weight = 0.0;
-  double Discrepancy = 0.0;
-  bool IsFound = true; ///< false: Weight is the end of the search
-};
-
-/// The search for the fidelity weight at which the mean square of u - f equals the noise:
-/// discrepancy principle (Morozov 1966). The root mean square of u - f must not increase with the
-/// weight. Stops at 1 % in the weight. If even 1e-8 of the first guess leaves less than the noise,
-/// that weight is returned as not found; likewise 1e8 of it. Brackets the root by factors of 4, then
-/// regula falsi (Illinois) in its logarithm.
-class DiscrepancySearch
-{
-public:
-  /// start: the first guess, of the right units.
-  DiscrepancySearch(double noiseLevel, double start);
-  /// A search that has found this weight.
-  explicit DiscrepancySearch(double weight);
-
-  bool IsDone() const { return this->Phase == Done; }
-  double Trial() const { return std::exp(this->X); } ///< the weight to try, or the found one
-  void Take(double discrepancy); ///< of the trial
-  FidelityChoice Found() const { return { this->Trial(), this->FB + this->Noise, this->HasRoot }; }
-
-private:
-  void FindNext();
-
-  enum
-  {
-    Start,
-    Bracketing,
-    Inside,
-    Done
-  } Phase = Start;
-  double Noise, Origin, X;
-  double Stride = 0.0;
-  double A = 0.0, B = 0.0; ///< logarithms of two weights
-  double FA = 0.0, FB = 0.0; ///< their discrepancies above the noise
-  bool IsClose = false, HasRoot = true;
-};
-
-/// The weight that a DiscrepancySearch finds. discrepancy(lambda): the root mean square of u - f.
-FidelityChoice FindFidelityByDiscrepancy(
-  const std::function<double(double)>& discrepancy, double noiseLevel, double start);
 
 /// Root of the area-weighted mean of w (u - f)^2 over the columns and the known vertices of fidelity
 /// factors w > 0: that of noise of the variances s^2/w is s.

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <map>
+
+namespace SurfaceDiffusion
+{
+
+/// A fidelity weight, and the root mean square of u - f that it leaves.
+struct FidelityChoice
+{
+  double Weight = 0.0;
+  double Discrepancy = 0.0;
+  bool IsFound = true; ///< false: Weight is the end of the search
+};
+
+/// What one trial weight gives.
+struct WeightTrial
+{
+  double Discrepancy = 0.0; ///< root mean square of u - f
+  double Risk = 0.0; ///< see UnbiasedRisk()
+};
+
+/// A search for a fidelity weight: it is told what the Trial() gives until it IsDone().
+class WeightSearch
+{
+public:
+  virtual ~WeightSearch() = default;
+
+  bool IsDone() const { return this->Done; }
+  double Trial() const { return std::exp(this->X); } ///< the weight to try, or the found one
+  virtual bool NeedsRisk() const { return false; }
+  virtual void Take(const WeightTrial& trial) = 0;
+  virtual FidelityChoice Found() const = 0;
+
+protected:
+  explicit WeightSearch(double start)
+    : Origin(std::log(start))
+    , X(this->Origin)
+  {
+  }
+  bool Done = false;
+  double Origin, X; ///< logarithms
+};
+
+/// A search that has found its weight.
+class KnownWeight : public WeightSearch
+{
+public:
+  explicit KnownWeight(double weight)
+    : WeightSearch(weight)
+  {
+    this->Done = true;
+  }
+  void Take(const WeightTrial& /*trial*/) override {}
+  FidelityChoice Found() const override { return { this->Trial(), 0.0, true }; }
+};
+
+/// The weight at which the mean square of u - f equals the noise: discrepancy principle (Morozov
+/// 1966). The root mean square of u - f must not increase with the weight. Stops at 1 % in the
+/// weight. If even 1e-8 of the first guess leaves less than the noise, that weight is returned as
+/// not found; likewise 1e8 of it. Brackets the root by factors of 4, then regula falsi (Illinois)
+/// in its logarithm.
+class DiscrepancySearch : public WeightSearch
+{
+public:
+  /// start: the first guess, of the right units.
+  DiscrepancySearch(double noiseLevel, double start)
+    : WeightSearch(start)
+    , Noise(noiseLevel)
+  {
+  }
+  void Take(const WeightTrial& trial) override;
+  FidelityChoice Found() const override
+  {
+    return { this->Trial(), this->FB + this->Noise, this->HasRoot };
+  }
+
+private:
+  void FindNext();
+
+  enum
+  {
+    Start,
+    Bracketing,
+    Inside
+  } Phase = Start;
+  double Noise;
+  double Stride = 0.0;
+  double A = 0.0, B = 0.0; ///< logarithms of two weights
+  double FA = 0.0, FB = 0.0; ///< their discrepancies above the noise
+  bool IsClose = false, HasRoot = true;
+};
+
+/// The weight of the smallest unbiased risk. The risk is flat around its minimum: 1.4 times the
+/// best weight costs 1 % of it. So the weights start * 2^j are tried: factors of 4 downhill until
+/// the smallest has a larger one on both sides, then the two between; the weight found is the
+/// minimum of the parabola through the smallest and its neighbours, in the logarithm, which depends
+/// smoothly on the risks. Downwards the search ends where a factor of 4 gains less than 1e-3 of the
+/// mean square of the noise, and both ways near 1e8 of the first guess. Such an end is found if the
+/// difference that it leaves is within 10 % of the noise, as that of noise without a signal.
+class RiskSearch : public WeightSearch
+{
+public:
+  RiskSearch(double noiseLevel, double start)
+    : WeightSearch(start)
+    , Noise(noiseLevel)
+  {
+  }
+  bool NeedsRisk() const override { return true; }
+  void Take(const WeightTrial& trial) override;
+  FidelityChoice Found() const override;
+
+private:
+  bool IsKnown(int exponent) const { return this->Trials.count(exponent) > 0; }
+  double RiskAt(int exponent) const { return this->Trials.at(exponent).Risk; }
+  bool IsEnd(int side) const;
+
+  double Noise;
+  std::map<int, WeightTrial> Trials; ///< by the exponent j
+  int Next = 0;
+  int Best = 0; ///< the exponent of the smallest risk
+  bool HasMinimum = false;
+};
+
+/// The weight that a DiscrepancySearch finds. discrepancy(lambda): the root mean square of u - f.
+FidelityChoice FindFidelityByDiscrepancy(
+  const std::function<double(double)>& discrepancy, double noiseLevel, double start);
+
+} // namespace SurfaceDiffusion
