@@ -28,6 +28,10 @@ namespace
 /// In first guesses of the search: keeps data to seven digits.
 constexpr double WeightWithoutNoise = 1e8;
 
+/// The changes of the data by which derivatives of states are found, over the noise. Larger ones are
+/// smoothed by minimisers of total variation more than noise is.
+constexpr double RiskStep = 0.2;
+
 /// Of a component that is held: beside so large a weight, solvers would miss the others' tolerance.
 constexpr double Held = std::numeric_limits<double>::infinity();
 
@@ -121,12 +125,14 @@ private:
   };
   Noise FindNoise(VertexRange range, Notes& notes);
   double TypicalFactor(VertexRange range) const;
+  void AddDirections(VertexRange range);
   void LeaveOutConstantParts(VertexRange range);
   void NoteSmoothData(double estimate, Notes& notes) const;
   std::unique_ptr<WeightSearch> MakeSearch(VertexRange range, const Noise& noise) const;
   /// The states that the models of the trial weights make of the data.
   Values Predict(PointData data, const FidelityModelMaker& makeModel) const;
-  PointData Perturbed() const;
+  /// The states of the data, and of the data changed by the noise in each direction.
+  std::vector<Values> PredictAll(const FidelityModelMaker& makeModel, std::size_t count) const;
 
   const ModelInputs& Inputs;
   const FidelityTask& Task;
@@ -135,7 +141,7 @@ private:
   std::vector<Part> Parts; ///< connected components, the largest first
   std::optional<NoiseEstimate> OfAll; ///< for components of too few points
   PointData Compared; ///< the measured data that the result has to differ from by the noise
-  Values Direction; ///< of the risk, see RiskDirection(); no rows if no part needs it
+  std::vector<Values> Directions; ///< see RiskDirection(); as many as the smallest part needs
 };
 
 ColumnSearch::ColumnSearch(
@@ -168,13 +174,21 @@ ColumnSearch::ColumnSearch(
     }
     if (this->Parts.back().Search->NeedsRisk())
     {
-      if (this->Direction.rows() == 0)
-      {
-        this->Direction = Values::Zero(this->Data.Given.rows(), this->Data.Given.cols());
-      }
-      this->Direction += RiskDirection(
-        inputs.Surface.Mesh(), this->Pattern, inputs.Surface.Points(), this->Compared, range);
+      this->AddDirections(range);
     }
+  }
+}
+
+void ColumnSearch::AddDirections(VertexRange range)
+{
+  const auto count = static_cast<std::size_t>(NumberOfRiskDirections(range.Size()));
+  const Values zero = Values::Zero(this->Data.Given.rows(), this->Data.Given.cols());
+  this->Directions.resize(std::max(this->Directions.size(), count), zero);
+  for (std::size_t d = 0; d < count; ++d)
+  {
+    this->Directions[d] +=
+      RiskDirection(this->Inputs.Surface.Mesh(), this->Pattern, this->Inputs.Surface.Points(),
+        this->Compared, range, this->Parts.back().Noise, static_cast<int>(d));
   }
 }
 
@@ -185,10 +199,11 @@ std::unique_ptr<WeightSearch> ColumnSearch::MakeSearch(VertexRange range, const 
   {
     return std::make_unique<KnownWeight>(WeightWithoutNoise * this->Task.Start);
   }
-  const double start = this->Task.Start / this->TypicalFactor(range);
+  const double unit = this->Task.IsStartOverNoise ? noise.Level : 1.0;
+  const double start = this->Task.Start / (unit * this->TypicalFactor(range));
   if (noise.IsWhite && this->Task.HasRisk)
   {
-    return std::make_unique<RiskSearch>(noise.Level, start);
+    return std::make_unique<RiskSearch>(noise.Level, start, this->Task.NoiseLevel > 0.0);
   }
   return std::make_unique<DiscrepancySearch>(noise.Level, start);
 }
@@ -264,8 +279,7 @@ ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
         : estimated,
       notes);
   }
-  const double level =
-    isGiven ? NoiseAtVertices(this->Inputs, this->Task.NoiseLevel) : estimated;
+  const double level = isGiven ? NoiseAtVertices(this->Inputs, this->Task.NoiseLevel) : estimated;
   if (level == 0.0)
   {
     Sentence text = Word::Setting("AutomaticFidelity");
@@ -278,7 +292,8 @@ ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
     notes.Add(estimate.IsUndetermined ? Notes::Undetermined : Notes::WithoutNoise, text);
   }
   // Noise of more than the differences between neighbours is not white.
-  const bool isWhite = estimate.IsUndetermined || level <= NoiseEstimate::CorrelatedGrowth * between;
+  const bool isWhite =
+    estimate.IsUndetermined || level <= NoiseEstimate::CorrelatedGrowth * between;
   return { level, isWhite && !this->Inputs.Cells };
 }
 
@@ -349,38 +364,69 @@ Values ColumnSearch::Predict(PointData data, const FidelityModelMaker& makeModel
   return predicted;
 }
 
-PointData ColumnSearch::Perturbed() const
+std::vector<Values> ColumnSearch::PredictAll(
+  const FidelityModelMaker& makeModel, std::size_t count) const
 {
-  PointData data = this->Data;
+  std::vector<PointData> data(1 + count, this->Data);
   for (const Part& part : this->Parts)
   {
     const auto rows = Eigen::seqN(part.Vertices.Begin, part.Vertices.Size());
-    const Values change = part.Noise * this->Direction(rows, Eigen::all);
-    data.Given(rows, Eigen::all) += change;
-    data.Start(rows, Eigen::all) += change;
+    for (std::size_t d = 0; d < count; ++d)
+    {
+      const Values change = RiskStep * part.Noise * this->Directions[d](rows, Eigen::all);
+      data[1 + d].Given(rows, Eigen::all) += change;
+      data[1 + d].Start(rows, Eigen::all) += change;
+    }
   }
-  return data;
+  std::vector<Values> states;
+  if (!this->Task.IsLinear)
+  {
+    for (PointData& one : data)
+    {
+      states.push_back(this->Predict(std::move(one), makeModel));
+    }
+    return states;
+  }
+  // One model with the columns of all of them: one matrix.
+  const Eigen::Index columns = this->Data.Given.cols();
+  PointData together = this->Data;
+  for (const auto member : { &PointData::Given, &PointData::Start })
+  {
+    Values& values = together.*member;
+    values.resize(Eigen::NoChange, columns * static_cast<Eigen::Index>(data.size()));
+    for (std::size_t d = 0; d < data.size(); ++d)
+    {
+      values.middleCols(static_cast<Eigen::Index>(d) * columns, columns) = data[d].*member;
+    }
+  }
+  const Values state = this->Predict(std::move(together), makeModel);
+  for (std::size_t d = 0; d < data.size(); ++d)
+  {
+    states.emplace_back(state.middleCols(static_cast<Eigen::Index>(d) * columns, columns));
+  }
+  return states;
 }
 
 void ColumnSearch::Advance(const FidelityModelMaker& makeModel)
 {
-  const Values predicted = this->Predict(this->Data, makeModel);
-  const bool needsRisk = std::any_of(this->Parts.begin(), this->Parts.end(), [](const Part& part)
-    { return !part.Search->IsDone() && part.Search->NeedsRisk(); });
-  const Values perturbed =
-    needsRisk ? this->Predict(this->Perturbed(), makeModel) : Values();
-  const TriangleMesh& mesh = this->Inputs.Surface.Mesh();
+  int count = 0;
+  for (const Part& part : this->Parts)
+  {
+    count = part.Search->IsDone() || !part.Search->NeedsRisk()
+      ? count
+      : std::max(count, NumberOfRiskDirections(part.Vertices.Size()));
+  }
+  std::vector<Values> changed = this->PredictAll(makeModel, static_cast<std::size_t>(count));
+  const Values state = std::move(changed.front());
+  changed.erase(changed.begin());
   for (Part& part : this->Parts)
   {
     if (!part.Search->IsDone())
     {
-      WeightTrial trial{ Discrepancy(mesh, this->Compared, predicted, part.Vertices) };
-      if (part.Search->NeedsRisk())
-      {
-        trial.Risk = UnbiasedRisk(mesh, this->Compared, predicted, perturbed, this->Direction,
-          part.Noise, part.Vertices);
-      }
-      part.Search->Take(trial);
+      const int needed =
+        part.Search->NeedsRisk() ? NumberOfRiskDirections(part.Vertices.Size()) : 0;
+      part.Search->Take(MeasureNoiseResponse(this->Inputs.Surface.Mesh(), this->Compared, state,
+        changed, this->Directions, needed, RiskStep * part.Noise, part.Vertices));
     }
   }
 }

@@ -21,9 +21,11 @@ struct FidelityTask
 {
   double NoiseLevel = 0.0; ///< in array units; 0: estimated
   double Start = 1.0; ///< the first guess, in units of the numerics
+  bool IsStartOverNoise = false; ///< whether the first guess is Start over the noise
   int Steps = 1; ///< the states that are compared with the data are those after so many
   bool ColumnsShareWeight = true; ///< false: each has its own
   double CellNoiseGain = 0.0; ///< of data on cells, see FindCellNoiseGain()
+  bool IsLinear = false; ///< whether models have any number of columns that do not mix
   bool HasRisk = true; ///< false: states do not depend on the data as UnbiasedRisk() needs it
   HeatBlur* Blur = nullptr; ///< applied to a state before it is compared; may be null
 };

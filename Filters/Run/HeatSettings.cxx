@@ -227,6 +227,7 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
     search.NoiseLevel = this->NoiseLevel;
     search.Start = 1.0 / (h * h);
     search.ColumnsShareWeight = false;
+    search.IsLinear = true;
     search.Blur = blur.get();
     found = FindFidelity(inputs, search, make, result);
   }
@@ -287,6 +288,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
     search.NoiseLevel = this->NoiseLevel;
     search.Start = 1.0 / (h * h);
     search.ColumnsShareWeight = false;
+    search.IsLinear = true;
     fidelity = FindFidelity(inputs, search, solve, result);
     effective = fidelity.OfColumns.front() / fidelityUnit;
   }

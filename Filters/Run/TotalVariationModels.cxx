@@ -116,12 +116,12 @@ FidelityWeights TotalVariationModels::FindWeights(RunResult& result) const
 {
   const double h = this->Units.CoreEdgeLength();
   const bool dimensionless = GetEdgeFunction(this->Options.EdgeFunction).Dimensionless;
-  const double start = 1.0 / (h * (dimensionless ? h : this->Units.CoreValueRange()));
   const double tolerance = std::max(SearchTolerance, this->Options.StopTolerance);
   const auto blur = this->Options.Blur.IsOn() ? this->Options.Blur.Make(this->Inputs, {}) : nullptr;
   FidelityTask search;
   search.NoiseLevel = this->Options.NoiseLevel;
-  search.Start = start;
+  search.Start = 1.0 / (dimensionless ? h * h : h);
+  search.IsStartOverNoise = !dimensionless;
   search.Steps = this->Options.DescribeModel().NumberOfSteps;
   search.ColumnsShareWeight =
     this->Options.ChannelCoupling == ChannelCoupling::Joint || !this->Options.Color.IsRGB();

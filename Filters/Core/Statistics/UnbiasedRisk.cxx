@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace SurfaceDiffusion
 
 namespace
 {
+
+constexpr double OutlierMargin = 2.0; ///< of the noise
 
 /// The vertices of the range by their values, and by their places where these are equal.
 std::vector<Index> SortByValues(const TriangleMesh& mesh, const Eigen::Ref<const Points>& points,
@@ -40,35 +43,70 @@ std::vector<Index> SortByValues(const TriangleMesh& mesh, const Eigen::Ref<const
   return order;
 }
 
+/// The noise at vertex i: of deviation `noise`, unless it is an outlier.
+double DeviationAt(
+  Index i, Eigen::Index column, const PointData& data, const SparsePattern& pattern, double noise)
+{
+  const double own = data.Given(i, column);
+  double least = std::numeric_limits<double>::infinity();
+  double largest = -least;
+  double sum = 0.0;
+  double count = 0.0;
+  for (Index slot = pattern.Outer[i]; slot < pattern.Outer[i + 1]; ++slot)
+  {
+    if (const Index j = pattern.Inner[slot]; j != i && data.FidelityFactor(j) > 0.0)
+    {
+      const double value = data.Given(j, column);
+      least = std::min(least, value);
+      largest = std::max(largest, value);
+      sum += value;
+      count += 1.0;
+    }
+  }
+  const bool isOutlier =
+    count > 0.0 && (own > largest + OutlierMargin * noise || own < least - OutlierMargin * noise);
+  return isOutlier ? std::abs(own - sum / count) : noise;
+}
+
 } // namespace
 
-Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
-  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range)
+int NumberOfRiskDirections(Index numberOfVertices)
 {
-  const auto isBetween = [&](Index i) { return data.Measured && data.Measured->IsBetween[i]; };
-  const auto canChange = [&](Index i) { return !data.Fixed[i] && data.FidelityFactor(i) > 0.0; };
+  return std::clamp(8000 / std::max(numberOfVertices, Index{ 1 }), Index{ 1 }, Index{ 8 });
+}
+
+Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
+  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range, double noise,
+  int number)
+{
+  const auto isUsed = [&](Index i)
+  {
+    return !data.Fixed[i] && data.FidelityFactor(i) > 0.0 &&
+      !(data.Measured && data.Measured->IsBetween[i]);
+  };
   Values direction = Values::Zero(data.Given.rows(), data.Given.cols());
   std::int64_t rank = 0;
   for (const Index i : SortByValues(mesh, points, data.Given, range))
   {
-    if (canChange(i) && !isBetween(i))
+    if (isUsed(i))
     {
       for (Eigen::Index k = 0; k < direction.cols(); ++k)
       {
-        const double sign = UniformRandom(0, k, rank) < 0.5 ? -1.0 : 1.0;
-        direction(i, k) = sign / std::sqrt(data.FidelityFactor(i));
+        const double sign = UniformRandom(number, k, rank) < 0.5 ? -1.0 : 1.0;
+        direction(i, k) = sign *
+          DeviationAt(i, k, data, pattern, noise / std::sqrt(data.FidelityFactor(i))) / noise;
       }
       ++rank;
     }
   }
   for (Index i = range.Begin; data.Measured && i < range.End; ++i)
   {
-    if (canChange(i) && isBetween(i))
+    if (data.Measured->IsBetween[i] && !data.Fixed[i] && data.FidelityFactor(i) > 0.0)
     {
       double count = 0.0;
       for (Index slot = pattern.Outer[i]; slot < pattern.Outer[i + 1]; ++slot)
       {
-        if (const Index j = pattern.Inner[slot]; canChange(j) && !isBetween(j))
+        if (const Index j = pattern.Inner[slot]; isUsed(j))
         {
           direction.row(i) += direction.row(j);
           count += 1.0;
@@ -80,10 +118,11 @@ Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
   return direction;
 }
 
-double UnbiasedRisk(const TriangleMesh& mesh, const PointData& data, const Values& u,
-  const Values& uOfPerturbed, const Values& direction, double noise, VertexRange range)
+NoiseResponse MeasureNoiseResponse(const TriangleMesh& mesh, const PointData& data, const Values& u,
+  const std::vector<Values>& changed, const std::vector<Values>& directions, int count, double step,
+  VertexRange range)
 {
-  double sum = 0.0;
+  NoiseResponse found;
   double area = 0.0;
   for (Index i = range.Begin; i < range.End; ++i)
   {
@@ -91,13 +130,27 @@ double UnbiasedRisk(const TriangleMesh& mesh, const PointData& data, const Value
     if (factor > 0.0)
     {
       const double weight = mesh.ControlAreas()[i] * factor;
-      sum += weight *
-        ((u.row(i) - data.Given.row(i)).squaredNorm() +
-          2.0 * noise * direction.row(i).dot(uOfPerturbed.row(i) - u.row(i)));
       area += mesh.ControlAreas()[i];
+      found.MeanSquare += weight * (u.row(i) - data.Given.row(i)).squaredNorm();
+      for (std::size_t d = 0; d < static_cast<std::size_t>(count); ++d)
+      {
+        const auto p = directions[d].row(i);
+        const Eigen::RowVectorXd kept = (changed[d].row(i) - u.row(i)) / step;
+        found.Freedom += weight / count * p.dot(kept);
+        found.Removed += weight / count * (p - kept).squaredNorm();
+        found.Direction += weight / count * p.squaredNorm();
+      }
     }
   }
-  return area > 0.0 ? sum / (area * static_cast<double>(u.cols())) : 0.0;
+  const double total = area * static_cast<double>(u.cols());
+  if (total > 0.0)
+  {
+    found.MeanSquare /= total;
+    found.Freedom /= total;
+    found.Removed /= total;
+    found.Direction /= total;
+  }
+  return found;
 }
 
 } // namespace SurfaceDiffusion

@@ -6,31 +6,57 @@
 #include "Core/Surface/PointData.h"
 #include "Core/Surface/TriangleMesh.h"
 
+#include <vector>
+
 namespace SurfaceDiffusion
 {
 
-/// Data and states of the unbiased risk (C. Stein, Annals of Statistics 9, 1981): an estimate of the
-/// mean square error of u, without its signal s, from data f = s + noise of the variances s^2/w,
-///
-///   sum_i A_i w_i (u_i - f_i)^2 + 2 s^2 sum_i A_i du_i/df_i,
-///
-/// less a constant, over the area and the number of columns. The sum of derivatives is that along
-/// one random direction p (M. Hutchinson, Commun. Stat. Simul. 19, 1990): the expectation of
-/// sum_i A_i w_i p_i (u(f + s p) - u(f))_i / s for independent p_i of the variances 1/w_i. Exact in
-/// that for linear u, and a difference over the size of the noise for others.
-///
-/// p: one row per vertex, 0 where a value is not known or does not change, and the mean of the
-/// neighbours at a vertex whose value was interpolated. The sign of p_i is a hash
-/// of the rank of the vertex by its values, and by its place among equal ones, in its range: it
-/// depends neither on the numbering and the units, nor on other ranges.
-/// mesh: of the data. points: of the input, rows as in TriangleMesh::InputVertex. pattern: of the
-/// stiffness matrix.
-Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
-  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range);
+/// How a state u = J(f) of noisy data f passes noise on. Means are over the area and the columns,
+/// weighted by the fidelity factors w; s p is a random direction of independent entries, whose
+/// variances are those of the noise: s^2/w, more at outliers. J' p is the derivative of u along p.
+struct NoiseResponse
+{
+  double MeanSquare = 0.0; ///< of (u - f)^2
+  double Freedom = 0.0; ///< of p J' p
+  double Removed = 0.0; ///< of (p - J' p)^2
+  double Direction = 0.0; ///< of p^2
 
-/// The estimate from states u of f and u' of f + noise p. `data`: those that count, see
-/// Discrepancy().
-double UnbiasedRisk(const TriangleMesh& mesh, const PointData& data, const Values& u,
-  const Values& uOfPerturbed, const Values& direction, double noise, VertexRange range);
+  /// The unbiased estimate of the mean square error of u, but for a constant: the expectation of
+  /// s^2 p J' p is that of the noise times u, sum_i A_i w_i var_i du_i/df_i over the area (C. Stein,
+  /// Annals of Statistics 9, 1981).
+  double Risk(double noise) const { return this->MeanSquare + 2.0 * noise * noise * this->Freedom; }
+  /// The estimate that needs no s: generalised cross-validation (P. Craven, G. Wahba, Numerische
+  /// Mathematik 31, 1979).
+  double CrossValidation() const
+  {
+    const double removed = 1.0 - this->Freedom / this->Direction;
+    return this->MeanSquare / (removed * removed);
+  }
+  /// The s^2 of noise of which u takes as much away as of f. It is larger than that of the noise
+  /// where u takes away some of the signal, too.
+  double LargestVariance() const { return this->MeanSquare / this->Removed; }
+};
+
+/// How many random directions (M. Hutchinson, Commun. Stat. Simul. 19, 1990) a part of so many
+/// vertices needs.
+int NumberOfRiskDirections(Index numberOfVertices);
+
+/// A random direction p: one row per vertex, 0 where a value is not known or does not change, and the
+/// mean of the neighbours at a vertex whose value was interpolated. Elsewhere it is +-1/sqrt(w_i), or
+/// +-|f_i - the mean of the neighbours|/noise at an outlier, whose value is beyond those of all
+/// neighbours by more than twice the noise, which differences across jumps of the signal are not.
+/// The sign is a hash of the rank of the vertex by its values, and by its place among equal ones, in
+/// its range: it depends neither on the numbering and the units, nor on other ranges. number: of the
+/// direction. mesh: of the data. points: of the input, rows as in TriangleMesh::InputVertex.
+/// pattern: of the stiffness matrix.
+Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
+  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range, double noise,
+  int number);
+
+/// From states u of f and changed[d] of f + step directions[d], for the first `count` of these.
+/// `data`: those that count, see Discrepancy().
+NoiseResponse MeasureNoiseResponse(const TriangleMesh& mesh, const PointData& data, const Values& u,
+  const std::vector<Values>& changed, const std::vector<Values>& directions, int count, double step,
+  VertexRange range);
 
 } // namespace SurfaceDiffusion

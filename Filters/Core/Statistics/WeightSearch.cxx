@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Statistics/WeightSearch.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace SurfaceDiffusion
 {
 
-void DiscrepancySearch::Take(const WeightTrial& trial)
+void DiscrepancySearch::Take(const NoiseResponse& trial)
 {
-  const double f = trial.Discrepancy - this->Noise;
+  const double f = std::sqrt(trial.MeanSquare) - this->Noise;
   switch (this->Phase)
   {
     case Start:
@@ -63,49 +66,74 @@ namespace
 {
 
 constexpr int LargestExponent = 28; ///< 2^28 is more than 1e8
+constexpr double MostFreedom = 0.98;
+constexpr double LargestExcess = 1.3; ///< of the mean square over that of the level of the noise
 constexpr double SmallestGain = 1e-3; ///< of a factor of 4, of the mean square of the noise
 
 } // namespace
 
-void RiskSearch::Take(const WeightTrial& trial)
+void RiskSearch::Take(const NoiseResponse& trial)
 {
   this->Trials[this->Next] = trial;
+  this->LargestVariance = std::min(this->LargestVariance, trial.LargestVariance());
   for (const auto& [exponent, tried] : this->Trials)
   {
-    this->Best = tried.Risk < this->RiskAt(this->Best) ? exponent : this->Best;
+    this->Best = this->RiskAt(exponent) < this->RiskAt(this->Best) ? exponent : this->Best;
   }
-  for (const int side : { 2, -2, 1, -1 })
+  const double gain = SmallestGain * this->Noise * this->Noise;
+  const int last = this->Trials.rbegin()->first;
+  const int first = this->Trials.begin()->first;
+  if (!this->HasMinimum)
   {
-    const bool isOuter = std::abs(side) == 2;
-    if (!this->IsKnown(this->Best + side) && !(isOuter && this->HasMinimum))
+    // Far below the best weights the estimate is flat: it has to rise before the end is upwards.
+    if (last < LargestExponent && this->Trials.at(last).Freedom < MostFreedom &&
+      (last == 0 || this->RiskAt(last) - this->RiskAt(this->Best) < gain))
     {
-      this->Done = isOuter && this->IsEnd(side);
-      this->Next = this->Best + (this->Done ? 0 : side);
-      this->X = this->Origin + this->Next * std::log(2.0);
-      return;
+      return this->Try(last + 2);
     }
-    this->HasMinimum = this->HasMinimum || side == -2;
+    if (this->Best == first && first > -LargestExponent &&
+      (first == 0 || this->RiskAt(first + 2) - this->RiskAt(first) > gain))
+    {
+      return this->Try(first - 2);
+    }
+    this->HasMinimum = this->Best > first && this->Best < last;
+    if (!this->HasMinimum)
+    {
+      this->Done = true;
+      return this->Try(this->Best);
+    }
+  }
+  for (const int side : { 1, -1 })
+  {
+    if (this->Trials.count(this->Best + side) == 0)
+    {
+      return this->Try(this->Best + side);
+    }
   }
   const double left = this->RiskAt(this->Best - 1) - this->RiskAt(this->Best);
   const double right = this->RiskAt(this->Best + 1) - this->RiskAt(this->Best);
   const double shift = left + right > 0.0 ? 0.5 * (left - right) / (left + right) : 0.0;
   this->Done = true;
-  this->X = this->Origin + (this->Best + shift) * std::log(2.0);
+  this->Try(this->Best + shift);
 }
 
-/// Whether nothing is sought farther on the side of the best weight. The risk is flat far below the
-/// best weights, too, so that upwards only a minimum is an end.
-bool RiskSearch::IsEnd(int side) const
+void RiskSearch::Try(double exponent)
 {
-  const int before = this->Best - side;
-  return std::abs(this->Best) >= LargestExponent ||
-    (side < 0 && this->IsKnown(before) &&
-      this->RiskAt(before) - this->RiskAt(this->Best) < SmallestGain * this->Noise * this->Noise);
+  this->Next = static_cast<int>(exponent);
+  this->X = this->Origin + exponent * std::log(2.0);
+}
+
+double RiskSearch::RiskAt(int exponent) const
+{
+  const NoiseResponse& trial = this->Trials.at(exponent);
+  return this->IsGiven || this->LargestVariance <= LargestExcess * this->Noise * this->Noise
+    ? trial.Risk(this->Noise)
+    : trial.CrossValidation();
 }
 
 FidelityChoice RiskSearch::Found() const
 {
-  const double discrepancy = this->Trials.at(this->Best).Discrepancy;
+  const double discrepancy = std::sqrt(this->Trials.at(this->Best).MeanSquare);
   return { this->Trial(), discrepancy,
     this->HasMinimum || std::abs(discrepancy - this->Noise) <= 0.1 * this->Noise };
 }
@@ -116,7 +144,7 @@ FidelityChoice FindFidelityByDiscrepancy(
   DiscrepancySearch search(noiseLevel, start);
   while (!search.IsDone())
   {
-    search.Take({ discrepancy(search.Trial()) });
+    search.Take({ std::pow(discrepancy(search.Trial()), 2) });
   }
   return search.Found();
 }

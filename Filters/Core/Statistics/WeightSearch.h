@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Statistics/UnbiasedRisk.h"
+
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 
 namespace SurfaceDiffusion
@@ -17,13 +20,6 @@ struct FidelityChoice
   bool IsFound = true; ///< false: Weight is the end of the search
 };
 
-/// What one trial weight gives.
-struct WeightTrial
-{
-  double Discrepancy = 0.0; ///< root mean square of u - f
-  double Risk = 0.0; ///< see UnbiasedRisk()
-};
-
 /// A search for a fidelity weight: it is told what the Trial() gives until it IsDone().
 class WeightSearch
 {
@@ -32,8 +28,9 @@ public:
 
   bool IsDone() const { return this->Done; }
   double Trial() const { return std::exp(this->X); } ///< the weight to try, or the found one
+  /// Whether it needs more than the mean square.
   virtual bool NeedsRisk() const { return false; }
-  virtual void Take(const WeightTrial& trial) = 0;
+  virtual void Take(const NoiseResponse& trial) = 0;
   virtual FidelityChoice Found() const = 0;
 
 protected:
@@ -55,7 +52,7 @@ public:
   {
     this->Done = true;
   }
-  void Take(const WeightTrial& /*trial*/) override {}
+  void Take(const NoiseResponse& /*trial*/) override {}
   FidelityChoice Found() const override { return { this->Trial(), 0.0, true }; }
 };
 
@@ -73,7 +70,7 @@ public:
     , Noise(noiseLevel)
   {
   }
-  void Take(const WeightTrial& trial) override;
+  void Take(const NoiseResponse& trial) override;
   FidelityChoice Found() const override
   {
     return { this->Trial(), this->FB + this->Noise, this->HasRoot };
@@ -95,32 +92,38 @@ private:
   bool IsClose = false, HasRoot = true;
 };
 
-/// The weight of the smallest unbiased risk. The risk is flat around its minimum: 1.4 times the
-/// best weight costs 1 % of it. So the weights start * 2^j are tried: factors of 4 downhill until
-/// the smallest has a larger one on both sides, then the two between; the weight found is the
-/// minimum of the parabola through the smallest and its neighbours, in the logarithm, which depends
-/// smoothly on the risks. Downwards the search ends where a factor of 4 gains less than 1e-3 of the
-/// mean square of the noise, and both ways near 1e8 of the first guess. Such an end is found if the
-/// difference that it leaves is within 10 % of the noise, as that of noise without a signal.
+/// The weight of the smallest estimate of the error. This is the unbiased risk where the level of
+/// the noise is that of the data's root mean square, too, or given; otherwise the noise has outliers
+/// or differs from place to place, or the data have jumps: then it is that of generalised
+/// cross-validation. Both are flat around the minimum: 1.4 times the best weight costs 1 % of the
+/// error. So the weights start * 2^j are tried: factors of 4 downhill until the smallest has a larger
+/// one on both sides, then the two between; the weight found is the minimum of the parabola through
+/// the smallest and its neighbours, in the logarithm, which depends smoothly on the estimates.
+/// Downwards the search ends where a factor of 4 gains less than 1e-3 of the mean square of the
+/// noise, upwards where hardly anything changes, and both ways near 1e8 of the first guess. Such an
+/// end is found if the difference that it leaves is within 10 % of the noise, as that of noise
+/// without a signal.
 class RiskSearch : public WeightSearch
 {
 public:
-  RiskSearch(double noiseLevel, double start)
+  RiskSearch(double noiseLevel, double start, bool isGiven = false)
     : WeightSearch(start)
     , Noise(noiseLevel)
+    , IsGiven(isGiven)
   {
   }
   bool NeedsRisk() const override { return true; }
-  void Take(const WeightTrial& trial) override;
+  void Take(const NoiseResponse& trial) override;
   FidelityChoice Found() const override;
 
 private:
-  bool IsKnown(int exponent) const { return this->Trials.count(exponent) > 0; }
-  double RiskAt(int exponent) const { return this->Trials.at(exponent).Risk; }
-  bool IsEnd(int side) const;
+  double RiskAt(int exponent) const;
+  void Try(double exponent);
 
   double Noise;
-  std::map<int, WeightTrial> Trials; ///< by the exponent j
+  bool IsGiven;
+  double LargestVariance = std::numeric_limits<double>::infinity(); ///< the least of the trials
+  std::map<int, NoiseResponse> Trials; ///< by the exponent j
   int Next = 0;
   int Best = 0; ///< the exponent of the smallest risk
   bool HasMinimum = false;
