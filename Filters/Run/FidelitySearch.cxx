@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/FidelitySearch.h"
 
+#include "Core/Foundation/Random.h"
 #include "Core/Models/ColumnModels.h"
 #include "Core/Models/HeatBlur.h"
 #include "Core/Statistics/MeasuredVertices.h"
@@ -126,6 +127,7 @@ private:
   Noise FindNoise(VertexRange range, Notes& notes);
   double TypicalFactor(VertexRange range) const;
   void AddDirections(VertexRange range);
+  Values CellDirection(VertexRange range, int number) const;
   void LeaveOutConstantParts(VertexRange range);
   void NoteSmoothData(double estimate, Notes& notes) const;
   std::unique_ptr<WeightSearch> MakeSearch(VertexRange range, const Noise& noise) const;
@@ -186,13 +188,53 @@ void ColumnSearch::AddDirections(VertexRange range)
   this->Directions.resize(std::max(this->Directions.size(), count), zero);
   for (std::size_t d = 0; d < count; ++d)
   {
-    this->Directions[d] +=
-      RiskDirection(this->Inputs.Surface.Mesh(), this->Pattern, this->Inputs.Surface.Points(),
-        this->Compared, range, this->Parts.back().Noise, static_cast<int>(d));
+    this->Directions[d] += this->Inputs.Cells
+      ? this->CellDirection(range, static_cast<int>(d))
+      : RiskDirection(this->Inputs.Surface.Mesh(), this->Pattern, this->Inputs.Surface.Points(),
+          this->Compared, range, this->Parts.back().Noise, static_cast<int>(d));
   }
 }
 
-/// The unbiased risk is that of white noise. Other noise is left by the discrepancy principle.
+/// A direction as RiskDirection() of white noise on cells, as vertices have it.
+Values ColumnSearch::CellDirection(VertexRange range, int number) const
+{
+  const CellTransfer& cells = *this->Inputs.Cells;
+  std::vector<std::pair<double, Index>> order; // by the means of the data
+  for (Index c = 0; c < cells.NumberOfCells(); ++c)
+  {
+    if (cells.Participates(c))
+    {
+      const auto row = [&](Index i) { return this->Data.Given.row(i).sum(); };
+      order.emplace_back(cells.MeanOver(c, row), c);
+    }
+  }
+  std::sort(order.begin(), order.end());
+  Values signs = Values::Zero(cells.NumberOfCells(), this->Data.Given.cols());
+  std::map<Index, std::int64_t> rankOf; // of cells that were one when they were measured
+  for (const auto& [mean, c] : order)
+  {
+    const Index measured =
+      this->Inputs.GivenCells.empty() ? c : this->Inputs.GivenCells[static_cast<std::size_t>(c)];
+    const std::int64_t rank =
+      rankOf.try_emplace(measured, static_cast<std::int64_t>(rankOf.size())).first->second;
+    for (Eigen::Index k = 0; k < signs.cols(); ++k)
+    {
+      signs(c, k) = UniformRandom(number, k, rank) < 0.5 ? -1.0 : 1.0;
+    }
+  }
+  Values direction = cells.ToVertices(signs, Vector::Ones(cells.NumberOfCells())).Of;
+  const double gain = NoiseGain(this->Inputs);
+  for (Index i = 0; i < direction.rows(); ++i)
+  {
+    const double factor = this->Compared.FidelityFactor(i);
+    const bool isUsed =
+      i >= range.Begin && i < range.End && !this->Compared.Fixed[i] && factor > 0.0;
+    direction.row(i) *= isUsed ? 1.0 / (gain * std::sqrt(factor)) : 0.0;
+  }
+  return direction;
+}
+
+/// The risk is that of white noise. Correlated noise is left by the discrepancy principle.
 std::unique_ptr<WeightSearch> ColumnSearch::MakeSearch(VertexRange range, const Noise& noise) const
 {
   if (noise.Level == 0.0)
@@ -201,7 +243,7 @@ std::unique_ptr<WeightSearch> ColumnSearch::MakeSearch(VertexRange range, const 
   }
   const double unit = this->Task.IsStartOverNoise ? noise.Level : 1.0;
   const double start = this->Task.Start / (unit * this->TypicalFactor(range));
-  if (noise.IsWhite && this->Task.HasRisk)
+  if (noise.IsWhite)
   {
     return std::make_unique<RiskSearch>(noise.Level, start, this->Task.NoiseLevel > 0.0);
   }
@@ -291,10 +333,10 @@ ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
       << " (to set the standard deviation of the noise, use " << Word::Setting("NoiseLevel") << ")";
     notes.Add(estimate.IsUndetermined ? Notes::Undetermined : Notes::WithoutNoise, text);
   }
-  // Noise of more than the differences between neighbours is not white.
-  const bool isWhite =
-    estimate.IsUndetermined || level <= NoiseEstimate::CorrelatedGrowth * between;
-  return { level, isWhite && !this->Inputs.Cells };
+  // Noise of more than the differences between neighbours is not white. That of cells is taken for it.
+  const bool isWhite = estimate.IsUndetermined || this->Inputs.Cells ||
+    level <= NoiseEstimate::CorrelatedGrowth * between;
+  return { level, isWhite };
 }
 
 /// The estimate of noise between neighbours is that of white noise. A note if there is none.

@@ -26,7 +26,6 @@ struct FidelityTask
   bool ColumnsShareWeight = true; ///< false: each has its own
   double CellNoiseGain = 0.0; ///< of data on cells, see FindCellNoiseGain()
   bool IsLinear = false; ///< whether models have any number of columns that do not mix
-  bool HasRisk = true; ///< false: states do not depend on the data as UnbiasedRisk() needs it
   HeatBlur* Blur = nullptr; ///< applied to a state before it is compared; may be null
 };
 
@@ -44,8 +43,8 @@ struct FidelityWeights
   std::unique_ptr<Model> MakeModels(PointData data, const FidelityModelMaker& makeModel) const;
 };
 
-/// The fidelity weights of the smallest unbiased risk, or at which the states differ from the data by
-/// the noise (discrepancy principle) where that is not white, on cells, and with L1, in each column and connected component by its own noise: a component and a column
+/// The fidelity weights of the smallest estimated error (see RiskSearch), or at which the states
+/// differ from the data by the noise (discrepancy principle) where that is correlated, in each column and connected component by its own noise: a component and a column
 /// come out as if they were alone. A component without enough points to estimate noise from has the
 /// noise of all. Warns in `result` if the noise is correlated, if the data are smooth between
 /// neighbours (see NeighbourVariation; not for data on cells), and if no weight leaves the noise,

@@ -125,7 +125,6 @@ FidelityWeights TotalVariationModels::FindWeights(RunResult& result) const
   search.Steps = this->Options.DescribeModel().NumberOfSteps;
   search.ColumnsShareWeight =
     this->Options.ChannelCoupling == ChannelCoupling::Joint || !this->Options.Color.IsRGB();
-  search.HasRisk = this->Options.FidelityNorm == FidelityNorm::L2;
   search.Blur = blur.get();
   return FindFidelity(
     this->Inputs, search,
