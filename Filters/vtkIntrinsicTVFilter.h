@@ -211,16 +211,13 @@ public:
   ///@}
 
   /**
-   * On: lambda is chosen by the discrepancy principle (V. Morozov, 1966), so that the area-weighted
-   * root mean square of the difference between the last state of the run and the data is that of
-   * the noise, with the mode, steps and discretisation of the run. A warning reports it if no
-   * weight does, as in runs too short to remove the noise.
-   * FidelityWeight is ignored. AutomaticFidelity has the requirements of SteadyState and needs
-   * FidelityNorm L2. The principle errs on the smooth side: on photographs with noise of 5 to 80 %
-   * its result was 1 to 3 dB from that of the best lambda, which leaves 0.88 to 0.99 of the noise
-   * in the residual. Constant parts of the data, such as a background of 0, have no noise and are
-   * left out. Default: off; with BlurFWHM and FidelityWeight 3, its default, on unless
-   * AutomaticBlurFidelity is off.
+   * On: lambda is chosen so that the estimated error of the last state of the run is smallest, by the
+   * estimates of vtkFVMHeatFilter::AutomaticFidelity, with the mode, steps and discretisation of the
+   * run. A warning reports it if no weight does, as in runs too short to remove the noise. For nine
+   * kinds of noise, four signals and three surfaces the error was 1.04 times that of the best lambda
+   * in the median, and at most 1.41 times in nine of ten cases. FidelityWeight is ignored.
+   * AutomaticFidelity has the requirements of SteadyState and needs FidelityNorm L2. Default: off;
+   * with BlurFWHM and FidelityWeight 3, its default, on unless AutomaticBlurFidelity is off.
    */
   SURFACEDIFFUSION_SWITCH(AutomaticFidelity);
 

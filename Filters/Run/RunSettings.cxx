@@ -219,12 +219,16 @@ void VisitResultOnCells(SettingVisitor& visitor, bool& onCells)
 
 void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel)
 {
-  visitor.Switch({ "AutomaticFidelity", "",
-                   "Choose the fidelity weight by the discrepancy principle (Morozov 1966): the "
-                   "result differs from the data by the noise level, where the data are not "
-                   "constant. Each component of the data that is not coupled with the others and "
-                   "each connected component of the surface has a weight of its own. "
-                   "FidelityWeight is ignored." },
+  visitor.Switch(
+    { "AutomaticFidelity", "",
+      "Choose the fidelity weight of the smallest estimated error: the unbiased risk "
+      "(Stein 1981) of the noise level, or generalised cross-validation (Craven and "
+      "Wahba 1979) where the data differ more than by that. Where the noise is "
+      "correlated the result differs from the data by the noise level (discrepancy "
+      "principle, Morozov 1966). Constant parts of the data do not count. Each component "
+      "of the data that is not coupled with the others and each connected component of the surface "
+      "has a weight of its own. "
+      "FidelityWeight is ignored." },
     automatic);
   visitor.Number(
     { "NoiseLevel", "values",

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -130,6 +131,85 @@ TEST(AutomaticWeight, LeavesConstantPartsOutOfTheNoise)
       }
     }
   }
+}
+
+namespace
+{
+
+/// f with one of five kinds of noise of about the deviation sigma.
+double WithNoise(int kind, double f, double sigma, Index i)
+{
+  const double uniform = UniformRandom(4, 2, i) - 0.5;
+  switch (kind)
+  {
+    case 0:
+      return f + sigma * Gaussian(i, 4);
+    case 1:
+      return f + std::sqrt(12.0) * sigma * uniform;
+    case 2: // Laplace
+      return f -
+        std::copysign(sigma / std::sqrt(2.0), uniform) * std::log(1.0 - 2.0 * std::abs(uniform));
+    case 3: // half of the values ten times as noisy as the others
+      return f + (i % 2 == 0 ? 0.14 : 1.4) * sigma * Gaussian(i, 4);
+    default: // 10 % outliers
+      return f + (UniformRandom(5, 0, i) < 0.1 ? 5.0 : 1.0) * sigma * Gaussian(i, 4);
+  }
+}
+
+/// The errors at the weight that is found over those at the best weight.
+template <typename ModelSettings, typename ModeType>
+std::vector<double> ErrorsOverBest(ModeType steady)
+{
+  const Testing::Surface s = Testing::Icosphere(4);
+  const std::vector<char> all(static_cast<std::size_t>(s.Vertices.rows()), 1);
+  std::vector<double> ratios;
+  for (int kind = 0; kind < 5; ++kind)
+  {
+    for (int signal = 0; signal < 3; ++signal)
+    {
+      Noisy data{ RunInput(s), Vector(s.Vertices.rows()) };
+      for (Eigen::Index i = 0; i < s.Vertices.rows(); ++i)
+      {
+        const double z = s.Vertices(i, 2);
+        data.Clean[i] = signal == 0 ? std::sin(3.0 * z)
+          : signal == 1             ? (z > 0.3 ? 1.0 : 0.0)
+                                    : std::max(-0.5, std::min(0.5, z));
+        data.Input.Data.Data.Values(i, 0) =
+          WithNoise(kind, data.Clean[i], 0.2, static_cast<Index>(i));
+      }
+      ModelSettings settings;
+      settings.Mode = steady;
+      settings.AutomaticFidelity = true;
+      bool warned = false;
+      SurfaceDiffusion::Run run(SerialFor());
+      StateOf(run, { data.Input.Block() }, settings);
+      const double weight = FindNumber(run.GetBlock(0).Outputs, "EffectiveFidelityWeight");
+      const double error = ErrorOf(data, all, settings, warned);
+      EXPECT_FALSE(warned);
+      settings.AutomaticFidelity = false;
+      double best = error;
+      for (const double exponent : { -4, -3, -2, -1, 1, 2, 3, 4 })
+      {
+        settings.FidelityWeight = weight * std::exp2(exponent);
+        best = std::min(best, ErrorOf(data, all, settings, warned));
+      }
+      ratios.push_back(error / best);
+    }
+  }
+  std::sort(ratios.begin(), ratios.end());
+  return ratios;
+}
+
+} // namespace
+
+TEST(AutomaticWeight, HasNearlyTheSmallestErrorForAnyDistributionOfNoise)
+{
+  const auto heat = ErrorsOverBest<HeatSettings>(HeatMode::SteadyState);
+  EXPECT_LT(heat[heat.size() / 2], 1.05);
+  EXPECT_LT(heat.back(), 1.3);
+  const auto tv = ErrorsOverBest<TotalVariationSettings>(TotalVariationMode::SteadyState);
+  EXPECT_LT(tv[tv.size() / 2], 1.1);
+  EXPECT_LT(tv.back(), 1.6);
 }
 
 // A part without noise is held, and the iterations of the other one are as exact as without it.

@@ -118,36 +118,6 @@ TEST(NoiseLevel, DiscrepancyIsTheWeightedRootMeanSquareOfWhatIsKnown)
   EXPECT_EQ(Discrepancy(*mesh, data, u), 0.0);
 }
 
-TEST(NoiseLevel, FidelityIsFoundToOnePercent)
-{
-  for (const double exact : { 1e-5, 0.3, 1.0, 250.0, 1e6 })
-  {
-    int calls = 0;
-    const auto discrepancy = [&](double lambda)
-    {
-      ++calls;
-      return 2.0 * exact / (lambda + exact);
-    };
-    const FidelityChoice found = FindFidelityByDiscrepancy(discrepancy, 1.0, 1.0);
-    EXPECT_TRUE(found.IsFound);
-    EXPECT_NEAR(found.Weight, exact, 0.01 * exact);
-    EXPECT_NEAR(found.Discrepancy, 1.0, 0.01);
-    EXPECT_LT(calls, 30);
-  }
-}
-
-TEST(NoiseLevel, SearchSaysThatItEndedAtItsLimits)
-{
-  const FidelityChoice low = FindFidelityByDiscrepancy([](double) { return 0.1; }, 1.0, 5.0);
-  EXPECT_FALSE(low.IsFound);
-  EXPECT_NEAR(low.Discrepancy, 0.1, 1e-12);
-  EXPECT_NEAR(std::log10(low.Weight / 5.0), -8.0, 0.7);
-  const FidelityChoice high = FindFidelityByDiscrepancy([](double) { return 3.0; }, 1.0, 5.0);
-  EXPECT_FALSE(high.IsFound);
-  EXPECT_NEAR(high.Discrepancy, 3.0, 1e-12);
-  EXPECT_NEAR(std::log10(high.Weight / 5.0), 8.0, 0.7);
-}
-
 TEST(NoiseLevel, SlopesOnIrregularMeshesAreNoNoise)
 {
   const Surface s = Jittered(Strip(100, 100), 0.35 / 100.0, 0.001, 0.999, 0.001, 0.999);
