@@ -682,7 +682,7 @@ TEST(Segmentation, EnergyNeverRisesOverTheAlternations)
     for (const double energy : model.Energies())
     {
       EXPECT_TRUE(std::isfinite(energy));
-      EXPECT_LE(energy, last * (1.0 + 1e-12));
+      EXPECT_LE(energy - last, 1e-12 * std::abs(energy));
       last = energy;
     }
     EXPECT_EQ(model.Energy(), last);
