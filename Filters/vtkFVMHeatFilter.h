@@ -105,8 +105,8 @@ public:
    * (M. Hutchinson 1990), and outliers have a noise of their own. Where the data differ from u by
    * more than s accounts for, at jumps or with uneven noise, it is generalised cross-validation (P.
    * Craven, G. Wahba, Numerische Mathematik 31, 1979), which needs no s. Where the noise is
-   * correlated, or NoiseLevel is above the differences between neighbours, the root mean square of
-   * u - f is that of the noise (discrepancy principle, V. Morozov 1966), which errs on the smooth
+   * correlated, NoiseLevel is above the differences between neighbours, or BlurFWHM is set, the root
+   * mean square of u - f is that of the noise (discrepancy principle, V. Morozov 1966), which errs on the smooth
    * side. For nine kinds of noise, four signals, and four surfaces the error was 1.01 times that of
    * the best lambda in the median, and at most 1.19 times in nine of ten cases. Constant parts of
    * the data, such as a background of 0, have no noise and are left out. FidelityWeight is ignored.

@@ -214,8 +214,8 @@ public:
    * On: lambda is chosen so that the estimated error of the last state of the run is smallest, by the
    * estimates of vtkFVMHeatFilter::AutomaticFidelity, with the mode, steps and discretisation of the
    * run. A warning reports it if no weight does, as in runs too short to remove the noise. For nine
-   * kinds of noise, four signals and three surfaces the error was 1.04 times that of the best lambda
-   * in the median, and at most 1.41 times in nine of ten cases. FidelityWeight is ignored.
+   * kinds of noise, four signals and four surfaces the error was 1.03 times that of the best lambda
+   * in the median, and at most 1.38 times in nine of ten cases. FidelityWeight is ignored.
    * AutomaticFidelity has the requirements of SteadyState and needs FidelityNorm L2. Default: off;
    * with BlurFWHM and FidelityWeight 3, its default, on unless AutomaticBlurFidelity is off.
    */

@@ -234,7 +234,9 @@ Values ColumnSearch::CellDirection(VertexRange range, int number) const
   return direction;
 }
 
-/// The risk is that of white noise. Correlated noise is left by the discrepancy principle.
+/// The risk is that of white noise. Correlated noise is left by the discrepancy principle. So is noise
+/// on blurred data, where the risk of H u says little of the error of u: the best weights for it left
+/// up to four times the best error of smooth data.
 std::unique_ptr<WeightSearch> ColumnSearch::MakeSearch(VertexRange range, const Noise& noise) const
 {
   if (noise.Level == 0.0)
@@ -243,7 +245,7 @@ std::unique_ptr<WeightSearch> ColumnSearch::MakeSearch(VertexRange range, const 
   }
   const double unit = this->Task.IsStartOverNoise ? noise.Level : 1.0;
   const double start = this->Task.Start / (unit * this->TypicalFactor(range));
-  if (noise.IsWhite)
+  if (noise.IsWhite && !this->Task.Blur)
   {
     return std::make_unique<RiskSearch>(noise.Level, start, this->Task.NoiseLevel > 0.0);
   }
@@ -434,12 +436,12 @@ std::vector<Values> ColumnSearch::PredictAll(
   PointData together = this->Data;
   for (const auto member : { &PointData::Given, &PointData::Start })
   {
-    Values& values = together.*member;
-    values.resize(Eigen::NoChange, columns * static_cast<Eigen::Index>(data.size()));
+    Values values(together.Given.rows(), columns * static_cast<Eigen::Index>(data.size()));
     for (std::size_t d = 0; d < data.size(); ++d)
     {
       values.middleCols(static_cast<Eigen::Index>(d) * columns, columns) = data[d].*member;
     }
+    together.*member = std::move(values);
   }
   const Values state = this->Predict(std::move(together), makeModel);
   for (std::size_t d = 0; d < data.size(); ++d)

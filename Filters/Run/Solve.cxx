@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Solve.h"
 
+#include "Core/Statistics/NoiseWidth.h"
 #include "Run/ErrorCauses.h"
 #include "Run/Outputs.h"
 #include "Run/Run.h"
 
+#include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -331,6 +334,72 @@ Solution Distance(const Points& points, const Triangles& triangles, const Surfac
   DistanceSettings settings, const ParallelFor& parallel)
 {
   return SolveOnce<DistanceRun>(points, triangles, data, settings, parallel);
+}
+
+SmoothnessEstimate EstimateFWHM(
+  const Points& points, const Triangles& triangles, const Values& maps, bool subtractsMean)
+{
+  Problems problems;
+  RequireRows("maps", static_cast<std::size_t>(maps.rows()),
+    static_cast<std::size_t>(points.rows()), false, problems);
+  ThrowProblems(problems);
+  const TriangleMesh mesh(points, triangles);
+  Values ofVertices(mesh.NumberOfVertices(), maps.cols());
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    ofVertices.row(i) = maps.row(mesh.InputVertex()[i]);
+  }
+  NoiseWidth widths(mesh, subtractsMean);
+  widths.Add(ofVertices);
+  SmoothnessEstimate found{ widths.OfAll() * mesh.LengthUnit(), widths.OfColumns() };
+  for (double& width : found.OfColumns)
+  {
+    width *= mesh.LengthUnit();
+  }
+  return found;
+}
+
+Values SmoothToFWHM(const Points& points, const Triangles& triangles, const Values& values,
+  double fwhm, const Values& given, const ParallelFor& parallel)
+{
+  Values noise = given;
+  if (noise.rows() == 0)
+  {
+    noise = values;
+    noise.colwise() -=
+      values.cols() > 1 ? Vector(values.rowwise().mean()) : Vector(Vector::Zero(values.rows()));
+  }
+  const auto smooth = [&](const Values& maps, double width)
+  {
+    HeatSettings settings;
+    settings.Units = UnitsMode::Absolute;
+    settings.TimeStep = width * width / (16.0 * std::log(2.0));
+    settings.NumberOfTimeSteps = 1;
+    settings.TimeIntegrator = TimeIntegrator::Exponential;
+    settings.MassMatrix = MassMatrix::Mixed;
+    return Heat(points, triangles, maps, settings, parallel).Result;
+  };
+  const double found = EstimateFWHM(points, triangles, noise).OfAll;
+  const TriangleMesh mesh(points, triangles);
+  WidthCorrection correction(
+    fwhm, found, mesh.ControlAreas().sum() * mesh.LengthUnit() * mesh.LengthUnit());
+  for (int trial = 0; trial < 40 && found < fwhm; ++trial)
+  {
+    const double width = correction.Width();
+    const double reached = EstimateFWHM(points, triangles, smooth(noise, width)).OfAll;
+    if (std::abs(reached / fwhm - 1.0) <= 0.005)
+    {
+      return smooth(values, width);
+    }
+    if (!correction.Take(reached))
+    {
+      break;
+    }
+  }
+  throw std::runtime_error((Sentence("fwhm is ")
+    << fwhm << ", but the noise has " << found << ", and smoothing reaches "
+    << correction.LargestReached() << "; allowed: larger widths that are small against the surface")
+                             .Text());
 }
 
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,

@@ -199,6 +199,23 @@ Solution Derivative(const Points& points, const Triangles& triangles, const Surf
 Solution Distance(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DistanceSettings settings = {}, const ParallelFor& parallel = SerialFor());
 
+/// The smoothness of noise maps, as full widths at half maximum in the unit of the coordinates.
+struct SmoothnessEstimate
+{
+  double OfAll; ///< of all columns together
+  std::vector<double> OfColumns;
+};
+
+/// See NoiseWidth. maps: one row per point, NaN where a value is missing.
+SmoothnessEstimate EstimateFWHM(
+  const Points& points, const Triangles& triangles, const Values& maps, bool subtractsMean = true);
+
+/// The values smoothed until their noise, smoothed alike, has the width `fwhm` to half a percent: see
+/// WidthCorrection. noise: without rows it is the values minus their mean over the columns, and of a
+/// single column the column itself. Throws if the noise is as smooth already, or cannot become so.
+Values SmoothToFWHM(const Points& points, const Triangles& triangles, const Values& values,
+  double fwhm, const Values& noise = Values(0, 0), const ParallelFor& parallel = SerialFor());
+
 /// The surface without noise; points of data.Fixed stay: see vtkSurfaceDenoisingFilter.
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,
   DenoisingRunSettings settings = {}, const SurfaceData& data = {},

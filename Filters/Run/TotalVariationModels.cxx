@@ -30,7 +30,7 @@ namespace
 constexpr double L1Rounding = 1e-3;
 
 /// The smallest duality gap of the minimisers that the search for lambda computes.
-constexpr double SearchTolerance = 1e-3;
+constexpr double SearchTolerance = 1e-2;
 
 /// The gradient at which the diffusivity is judged for the choice of a solver, in R/h.
 constexpr double TypicalGradient = 0.01;

@@ -184,6 +184,26 @@ NB_MODULE(_core, m)
     .def("length_unit", &SurfaceFields::LengthUnit)
     .def("mean_edge_length", &SurfaceFields::MeanEdgeLength);
 
+  nb::class_<NoiseWidth>(m, "NoiseWidth")
+    .def(
+      "__init__",
+      [](NoiseWidth* self, const SurfaceFields& surface, bool subtractsMean)
+      { new (self) NoiseWidth(surface.Mesh(), subtractsMean); },
+      "surface"_a, "subtracts_mean"_a, nb::keep_alive<1, 2>())
+    .def(
+      "add",
+      [](NoiseWidth& self, const SurfaceFields& surface, const ColumnArray& values)
+      { surface.AddTo(self, values); },
+      "surface"_a, "values"_a)
+    .def("of_columns", &NoiseWidth::OfColumns)
+    .def("of_all", &NoiseWidth::OfAll)
+    .def("largest_of_columns", &NoiseWidth::LargestOfColumns);
+  nb::class_<WidthCorrection>(m, "WidthCorrection")
+    .def(nb::init<double, double, double>(), "wanted"_a, "found"_a, "area"_a)
+    .def("width", &WidthCorrection::Width)
+    .def("take", &WidthCorrection::Take, "reached"_a)
+    .def("largest_reached", &WidthCorrection::LargestReached);
+
   nb::class_<PythonRuns>(m, "SurfaceRuns")
     .def(nb::init<std::string>(), "function"_a)
     .def("update", &PythonRuns::Update, "surfaces"_a, "settings"_a, "progress"_a.none())

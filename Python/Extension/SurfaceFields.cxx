@@ -113,14 +113,7 @@ double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray&
       for (Eigen::Index start = 0; start < columns; start += ColumnPanel)
       {
         const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, columns - start);
-        Values panel(mesh.NumberOfVertices(), count);
-        ForEach(PythonThreads::Instance(), mesh.NumberOfVertices(),
-          [&](Index i)
-          {
-            const double* const row =
-              values.data() + mesh.InputVertex()[i] * static_cast<std::ptrdiff_t>(columns) + start;
-            std::copy_n(row, count, &panel(i, 0));
-          });
+        Values panel = this->Read(values, start, count);
         filter.Apply(panel,
           monitor.Part(static_cast<double>(start) / all, static_cast<double>(start + count) / all));
         this->Write(panel, start, values);
@@ -128,6 +121,12 @@ double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray&
       missed = filter.MissedResidual();
     });
   return missed;
+}
+
+void SurfaceFields::AddTo(NoiseWidth& widths, const ColumnArray& values) const
+{
+  const nb::gil_scoped_release release;
+  widths.Add(this->Read(values, 0, static_cast<Eigen::Index>(values.shape(1))));
 }
 
 nb::object SurfaceFields::Areas() const
@@ -153,6 +152,20 @@ double SurfaceFields::MeanEdgeLength() const
   return edges > 0.0 ? mesh.TotalEdgeLength() * mesh.LengthUnit() / edges *
       std::sqrt(mesh.ControlAreas().sum() / drawn)
                      : 1.0;
+}
+
+Values SurfaceFields::Read(const ColumnArray& columns, Eigen::Index first, Eigen::Index count) const
+{
+  const TriangleMesh& mesh = this->Built->Mesh();
+  const auto width = static_cast<std::ptrdiff_t>(columns.shape(1));
+  Values ofVertices(mesh.NumberOfVertices(), count);
+  ForEach(PythonThreads::Instance(), mesh.NumberOfVertices(),
+    [&](Index i)
+    {
+      const double* const row = columns.data() + mesh.InputVertex()[i] * width + first;
+      std::copy_n(row, count, &ofVertices(i, 0));
+    });
+  return ofVertices;
 }
 
 void SurfaceFields::Write(

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Models/Fields/RandomField.h"
+#include "Core/Statistics/NoiseWidth.h"
 #include "InputData.h"
 
 #include <map>
@@ -37,6 +38,10 @@ public:
   double FilterScales(const ColumnArray& values, const FactorArray& wavelengths, int order,
     const nanobind::object& progress) const;
 
+  /// Add the columns, NaN where a value is missing, to an estimate of their smoothness.
+  void AddTo(NoiseWidth& widths, const ColumnArray& values) const;
+  const TriangleMesh& Mesh() const { return this->Built->Mesh(); }
+
   Index NumberOfVertices() const { return this->Built->Mesh().NumberOfVertices(); }
   const SurfaceDiagnostics& Diagnostics() const { return this->Built->Diagnostics(); }
   /// The control areas (n) in LengthUnit()^2; 0 at points that take no part.
@@ -46,6 +51,7 @@ public:
   double MeanEdgeLength() const;
 
 private:
+  Values Read(const ColumnArray& columns, Eigen::Index first, Eigen::Index count) const;
   void Write(const Values& ofVertices, Eigen::Index first, const ColumnArray& columns) const;
 
   std::unique_ptr<const Surface> Built;

@@ -9,20 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _core
 from ._functions import heat
 from ._run import find_result_type, warn
 from ._settings import as_number, as_switch
 from ._surface import Surface, SurfaceLike, as_data, as_flags, as_surface, data_components, left_out
-
-#: exp(-d^2 / (4 sigma^2)) = exp(-d^2 * _RATE / FWHM^2), since FWHM^2 = 8 ln 2 sigma^2.
-_RATE = 2.0 * np.log(2.0)
-
-#: The square of the FWHM that takes half of the variance with the mean, over the area: 4 pi sigma^2 is
-#: half of the area.
-_HALF = np.log(2.0) / np.pi
-
-#: Edges with equal shares of the weight have one length in the solve.
-_BINS = 256
 
 #: Columns that are handled together: the memory does not grow with their number.
 _PANEL = 16
@@ -112,6 +103,16 @@ def estimate_fwhm(
     return estimate
 
 
+def _fields(surface: Surface) -> Any:
+    """The mesh of the whole surface, which the surface keeps."""
+    fields = surface._runs.get("widths")
+    if fields is None:
+        fields = surface._runs["widths"] = _core.SurfaceFields(surface._core, None, False, False, 0.0, None)
+    if not fields.number_of_vertices():
+        raise ValueError("surface has no triangle of positive area; allowed: one or more")
+    return fields
+
+
 def _estimate(
     surface: SurfaceLike, residuals: ArrayLike, mask: Any, roi: Any, demean: bool
 ) -> tuple[FWHMEstimate, NDArray[np.float64]]:
@@ -119,125 +120,20 @@ def _estimate(
     surface = as_surface(surface)
     maps = as_data("residuals", residuals, surface.n_points)
     masked = as_flags("mask", left_out(mask, roi, surface, faces=False), surface.n_points)
-    demean = as_switch("demean", demean)
-    edges = _Edges(surface)
-    products = np.zeros(maps.shape[1])  # of neighbours, per variance
-    variances = np.zeros((maps.shape[1], len(edges.squares)))  # shares of the bins of edges
-    areas = np.zeros(maps.shape[1])  # of the known part
-    for first in range(0, maps.shape[1], _PANEL):
-        panel = np.array(maps[:, first : first + _PANEL], dtype=np.float64)
-        if masked is not None:
-            panel[masked != 0] = np.nan
-        known = np.isfinite(panel) & (edges.areas > 0)[:, None]
-        for k in range(panel.shape[1]):
-            s, chosen = panel[:, k], known[:, k]
-            if not chosen.any():
-                raise ValueError(f"residuals has no known value in column {first + k}; allowed: "
-                                 "finite values at some points of the surface")
-            areas[first + k] = edges.areas[chosen].sum()
-            if demean:
-                s = s - np.average(s[chosen], weights=edges.areas[chosen])
-            scale = np.abs(s[chosen]).max()  # squares neither overflow nor vanish
-            s = np.where(chosen, s / scale if scale > 0 else 0.0, 0.0)
-            both = chosen[edges.ends[0]] & chosen[edges.ends[1]]
-            a, b = s[edges.ends[0]], s[edges.ends[1]]
-            weights = np.where(both, edges.weights, 0.0)
-            local = 0.5 * weights * (a * a + b * b)
-            total = local.sum()
-            if total > 0:
-                products[first + k] = (weights * a * b).sum() / total
-                variances[first + k] = np.bincount(
-                    edges.bins, local / total, minlength=len(edges.squares))
-    if not demean:
-        areas[:] = np.inf
-    columns = np.array([_solve(p, v, edges.squares, a) for p, v, a in zip(products, variances, areas)])
-    varying = variances.sum(axis=1) > 0  # constant columns say nothing of the others
-    widest = np.where(varying, np.sqrt(_HALF * areas), 0.0)
-    if not varying.any():
-        return FWHMEstimate(float("inf"), columns), widest
-    pooled = _solve(products[varying].mean(), variances[varying].mean(axis=0), edges.squares,
-                    areas[varying].mean())
-    return FWHMEstimate(pooled, columns), widest
-
-
-class _Edges:
-    """The edges of a surface, with weights and with their squared lengths in bins."""
-
-    def __init__(self, surface: Surface) -> None:
-        triangles, points = surface.triangles, surface.points
-        area, self.areas = surface._areas_of_triangles(), surface._triangle_areas()
-        ends = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        unique, inverse = np.unique(
-            ends[:, 0].astype(np.int64) * surface.n_points + ends[:, 1], return_inverse=True)
-        self.ends = np.divmod(unique, surface.n_points)
-        squares = ((points[self.ends[0]] - points[self.ends[1]]) ** 2).sum(axis=1)
-        if surface.areas is not None:  # lengths grow as the roots of areas
-            factors = np.divide(surface.areas, self.areas, out=np.ones_like(self.areas),
-                                where=self.areas > 0)
-            squares *= 0.5 * (factors[self.ends[0]] + factors[self.ends[1]])
-            area = area * factors[triangles].mean(axis=1)
-            self.areas = self.areas * factors
-        areas = np.bincount(inverse.ravel(), np.repeat(area, 3), len(unique))
-        kept = (squares > 0) & (areas > 0)
-        self.ends = (self.ends[0][kept], self.ends[1][kept])
-        squares, areas = squares[kept], areas[kept]
-        if squares.size == 0:
-            raise ValueError("surface has no triangle of positive area; allowed: one or more")
-        self.weights = areas / squares
-        order = np.argsort(squares)
-        share = np.cumsum(areas[order]) / areas.sum()
-        self.bins = np.empty(len(order), dtype=np.int64)
-        self.bins[order] = np.minimum(_BINS - 1, (share * _BINS).astype(np.int64))
-        total = np.bincount(self.bins, self.weights, _BINS)
-        mean = np.bincount(self.bins, self.weights * squares, _BINS)
-        self.squares = np.divide(mean, total, out=np.zeros(_BINS), where=total > 0)
-
-
-def _solve(
-    product: float, variances: NDArray[np.float64], squares: NDArray[np.float64], area: float
-) -> float:
-    """The FWHM of noise whose neighbours have the correlation `product`. variances: the shares of
-    edges with these squared lengths, which sum to 1."""
-    if not variances.sum() > 0 or product >= 1.0:
-        return float("inf")
-    if product <= 0.0:
-        return 0.0
-    if not np.isfinite(area):
-        return _invert(product, variances, squares)
-
-    def excess(widths: NDArray[np.float64]) -> NDArray[np.float64]:
-        expected = np.exp(-_RATE * squares / widths[:, None] ** 2) @ variances
-        taken = 0.5 * widths**2 / (_HALF * area)  # the part of the variance that goes with the mean
-        rising: NDArray[np.float64] = (expected - taken) / (1.0 - taken) - product
-        return rising
-
-    # It rises with the width until the mean takes half of the variance, or less on coarse surfaces.
-    widths = np.sqrt(_HALF * area) * np.geomspace(1e-6, 1.0, 512)
-    above = np.flatnonzero(excess(widths) > 0.0)
-    if above.size == 0:
-        return float("inf")
-    low, high = float(widths[above[0] - 1]) if above[0] else 0.0, float(widths[above[0]])
-    while low < 0.5 * (low + high) < high:
-        middle = 0.5 * (low + high)
-        if excess(np.array([middle]))[0] > 0.0:
-            high = middle
-        else:
-            low = middle
-    return high
-
-
-def _invert(
-    correlation: float, variances: NDArray[np.float64], squares: NDArray[np.float64]
-) -> float:
-    """The FWHM for which sum variances exp(-squares x) = correlation, with x = 2 ln 2 / FWHM^2."""
-    x = 0.0
-    for _ in range(100):  # Newton from the left of a convex, decreasing function: monotone
-        terms = variances * np.exp(-squares * x)
-        step = (terms.sum() - correlation) / (terms @ squares)
-        x += step
-        if step <= 1e-13 * x:
-            break
-    return float(np.sqrt(_RATE / x)) if x > 0 else float("inf")
+    with surface._lock:
+        fields = _fields(surface)
+        widths = _core.NoiseWidth(fields, as_switch("demean", demean))
+        for first in range(0, maps.shape[1], _PANEL):
+            panel = np.array(maps[:, first : first + _PANEL], dtype=np.float64, order="C")
+            if masked is not None:
+                panel[masked != 0] = np.nan
+            widths.add(fields, panel)
+    unit = fields.length_unit()
+    largest = unit * np.array(widths.largest_of_columns())
+    if np.isnan(largest).any():
+        raise ValueError(f"residuals has no known value in column {int(np.argmax(np.isnan(largest)))}; "
+                         "allowed: finite values at some points of the surface")
+    return FWHMEstimate(unit * widths.of_all(), unit * np.array(widths.of_columns())), largest
 
 
 def smooth_to_fwhm(
@@ -327,31 +223,19 @@ def smooth_to_fwhm(
                                     number_of_time_steps=1, **keywords)
         return result
 
-    area = float(_Edges(surface).areas.sum())
     found = measure(noise)
     if not found < fwhm:
         raise ValueError(f"fwhm is {fwhm:g}, but the noise has a smoothness of {found:.4g} already; "
                          "allowed: larger widths")
-    # Squares of widths add up: the correction is a secant step on squares.
-    width = np.sqrt(fwhm**2 - found**2)
-    before = (0.0, found**2)
-    largest = found**2
-    low, high = 0.0, np.inf  # squares of widths that reach less and more
+    fields = _fields(surface)
+    area = float(fields.areas().sum()) * fields.length_unit() ** 2
+    correction = _core.WidthCorrection(fwhm, found, area)
     for _ in range(40):
-        reached = measure(smooth(noise, width)) ** 2
-        if abs(np.sqrt(reached) / fwhm - 1.0) <= tolerance:
+        width = correction.width()
+        reached = measure(smooth(noise, width))
+        if abs(reached / fwhm - 1.0) <= tolerance:
             return smooth(values, width, dtype=dtype)
-        low, high = (low, width**2) if reached > fwhm**2 else (width**2, high)
-        step = fwhm**2 - reached
-        if np.isfinite(reached):  # else the surface is smaller than the kernel
-            largest = max(largest, reached)
-            slope = (reached - before[1]) / (width**2 - before[0])
-            step = step / slope if slope > 0.1 else step
-            before = (width**2, reached)
-        square = min(max(width**2 + step, 0.01 * width**2), 100.0 * width**2)
-        square = square if low < square < high else 0.5 * (low + high)
-        if not (low < square < high) or high - low < 1e-9 * low or square > 4.0 * _HALF * area:
+        if not correction.take(reached):
             break
-        width = np.sqrt(square)
-    raise ValueError(f"fwhm is {fwhm:g}, but smoothing reaches {np.sqrt(largest):.4g}; allowed: "
+    raise ValueError(f"fwhm is {fwhm:g}, but smoothing reaches {correction.largest_reached():.4g}; allowed: "
                      "widths of several edges that are small against the surface")

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Foundation/Random.h"
+#include "Core/Statistics/NoiseWidth.h"
 #include "Meshes.h"
 
 #include <cmath>
@@ -46,35 +47,12 @@ inline Values WhiteNoise(const TriangleMesh& mesh, Index columns)
   return noise;
 }
 
-/// The full width at half maximum, in the unit of the mesh, of the kernel after which white noise has
-/// the correlation of neighbours that u has: exp(-2 ln 2 d^2/width^2) at the distance d.
+/// In the unit of the mesh.
 inline double WidthOfNoise(const TriangleMesh& mesh, const Values& u)
 {
-  double products = 0.0;
-  Vector squares(3 * mesh.NumberOfTriangles());
-  Vector variances(squares.size());
-  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      const auto v = u.row(mesh.TriangleVertices()(t, (a + 1) % 3));
-      const auto w = u.row(mesh.TriangleVertices()(t, (a + 2) % 3));
-      squares[3 * t + a] = std::pow(mesh.Shapes()[t].EdgeLength(a), 2);
-      const double weight = mesh.Shapes()[t].Area() / squares[3 * t + a];
-      products += weight * v.dot(w);
-      variances[3 * t + a] = 0.5 * weight * (v.squaredNorm() + w.squaredNorm());
-    }
-  }
-  double low = 0.0;
-  double high = 1e3 * mesh.MeanEdgeLength();
-  while (high - low > 1e-9 * high)
-  {
-    const double middle = 0.5 * (low + high);
-    const double rate = 2.0 * std::log(2.0) / (middle * middle);
-    const double expected = (variances.array() * (-rate * squares.array()).exp()).sum();
-    (expected > products ? high : low) = middle;
-  }
-  return high;
+  NoiseWidth widths(mesh, false);
+  widths.Add(u);
+  return widths.OfAll();
 }
 
 } // namespace SurfaceDiffusion::Testing

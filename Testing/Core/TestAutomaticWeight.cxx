@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Heat.h"
+#include "KindsOfNoise.h"
 #include "RunInput.h"
 
 #include "Run/HeatSettings.h"
@@ -27,12 +28,6 @@ namespace
 using Testing::Alone;
 using Testing::RunInput;
 using Testing::StateOf;
-
-double Gaussian(Index i, int seed)
-{
-  const double r = std::sqrt(-2.0 * std::log(1.0 - UniformRandom(seed, 0, i)));
-  return r * std::cos(2.0 * Testing::Pi * UniformRandom(seed, 1, i));
-}
 
 /// Points with the largest values of a function of the place: the rest of them is constant.
 std::vector<char> Part(const Testing::Surface& s, double share)
@@ -69,8 +64,8 @@ Noisy MakeNoisy(const Testing::Surface& s, const std::vector<char>& part, double
   {
     const bool inside = part[static_cast<std::size_t>(i)] != 0;
     data.Clean[i] = background + (inside ? 0.2 * std::sin(3.0 * s.Vertices(i, 1)) : 0.0);
-    data.Input.Data.Data.Values(i, 0) = data.Clean[i] +
-      (inside || noisyEverywhere ? sigma * Gaussian(static_cast<Index>(i), 4) : 0.0);
+    data.Input.Data.Data.Values(i, 0) =
+      data.Clean[i] + (inside || noisyEverywhere ? sigma * Testing::GaussianNumber(i, 4) : 0.0);
   }
   return data;
 }
@@ -136,26 +131,6 @@ TEST(AutomaticWeight, LeavesConstantPartsOutOfTheNoise)
 namespace
 {
 
-/// f with one of five kinds of noise of about the deviation sigma.
-double WithNoise(int kind, double f, double sigma, Index i)
-{
-  const double uniform = UniformRandom(4, 2, i) - 0.5;
-  switch (kind)
-  {
-    case 0:
-      return f + sigma * Gaussian(i, 4);
-    case 1:
-      return f + std::sqrt(12.0) * sigma * uniform;
-    case 2: // Laplace
-      return f -
-        std::copysign(sigma / std::sqrt(2.0), uniform) * std::log(1.0 - 2.0 * std::abs(uniform));
-    case 3: // half of the values ten times as noisy as the others
-      return f + (i % 2 == 0 ? 0.14 : 1.4) * sigma * Gaussian(i, 4);
-    default: // 10 % outliers
-      return f + (UniformRandom(5, 0, i) < 0.1 ? 5.0 : 1.0) * sigma * Gaussian(i, 4);
-  }
-}
-
 /// The errors at the weight that is found over those at the best weight.
 template <typename ModelSettings, typename ModeType>
 std::vector<double> ErrorsOverBest(ModeType steady)
@@ -175,7 +150,7 @@ std::vector<double> ErrorsOverBest(ModeType steady)
           : signal == 1             ? (z > 0.3 ? 1.0 : 0.0)
                                     : std::max(-0.5, std::min(0.5, z));
         data.Input.Data.Data.Values(i, 0) =
-          WithNoise(kind, data.Clean[i], 0.2, static_cast<Index>(i));
+          Testing::WithNoise(static_cast<Testing::NoiseKind>(kind), data.Clean[i], 0.2, i);
       }
       ModelSettings settings;
       settings.Mode = steady;
@@ -252,8 +227,7 @@ TEST(AutomaticWeight, OfUnevenNoiseWithItsFactorsLeavesLessThanTheDataHaveInAnyU
     {
       const double sigma = s.Vertices(i, 2) > 0.0 ? 0.03 : 0.3;
       data.Clean[i] = std::sin(3.0 * s.Vertices(i, 0));
-      data.Input.Data.Data.Values(i, 0) =
-        data.Clean[i] + sigma * Gaussian(static_cast<Index>(i), 4);
+      data.Input.Data.Data.Values(i, 0) = data.Clean[i] + sigma * Testing::GaussianNumber(i, 4);
       data.Input.Data.FidelityFactors.Values[static_cast<std::size_t>(i)] =
         unit * unit / (sigma * sigma);
       noise += sigma * sigma / static_cast<double>(s.Vertices.rows());
@@ -314,7 +288,7 @@ void AddSmoothedNoise(RunInput& input, double edges, double deviation)
   Values noise(mesh->NumberOfVertices(), 1);
   for (Index i = 0; i < mesh->NumberOfVertices(); ++i)
   {
-    noise(i, 0) = Gaussian(i, 17);
+    noise(i, 0) = Testing::GaussianNumber(i, 17);
   }
   noise = Testing::Diffuse(std::make_shared<Assembler>(mesh), PointData::FromValues(noise),
     length * length / 2.0, 8, 0.0, Testing::Scheme::SDIRK2);
@@ -384,7 +358,7 @@ TEST(AutomaticWeight, OfWhiteNoiseOnASignalWarnsOfNothing)
     for (Eigen::Index i = 0; i < input.Vertices.rows(); ++i)
     {
       input.Data.Data.Values(i, 0) = 0.5 * std::sin(2.0 * input.Vertices(i, 0)) +
-        (input.Vertices(i, 1) > 0.4 ? 1.0 : 0.0) + sigma * Gaussian(static_cast<Index>(i), 3);
+        (input.Vertices(i, 1) > 0.4 ? 1.0 : 0.0) + sigma * Testing::GaussianNumber(i, 3);
     }
     EXPECT_TRUE(WarningsOf(input, heat).empty()) << sigma;
     EXPECT_TRUE(WarningsOf(input, tv).empty()) << sigma;
@@ -414,7 +388,7 @@ Noisy BlurredCap(int level, double width, double sigma)
   {
     data.Input.Data.Data.Values(i, 0) =
       u(run.GetBlock(0).Surface->VertexOf(static_cast<Index>(i)), 0) +
-      sigma * Gaussian(static_cast<Index>(i), 7);
+      sigma * Testing::GaussianNumber(i, 7);
   }
   return data;
 }

@@ -125,6 +125,23 @@ TEST(Solve, EveryModelHasItsResults)
   EXPECT_EQ(smooth.Arrays.at("Points"), smooth.Result);
 }
 
+TEST(Solve, NoiseIsSmoothedToTheWidthThatIsWanted)
+{
+  const RunInput s(Testing::Icosphere(4));
+  Values noise(s.Vertices.rows(), 20);
+  for (Eigen::Index i = 0; i < noise.size(); ++i)
+  {
+    noise.data()[i] = UniformRandom(1, 0, i) - 0.5;
+  }
+  const Values smooth = SmoothToFWHM(s.Vertices, s.Faces, noise, 0.4);
+  const Values centred = smooth.colwise() - Vector(smooth.rowwise().mean());
+  const SmoothnessEstimate found = EstimateFWHM(s.Vertices, s.Faces, centred);
+  EXPECT_NEAR(found.OfAll, 0.4, 0.006);
+  EXPECT_EQ(found.OfColumns.size(), 20U);
+  EXPECT_LT(EstimateFWHM(s.Vertices, s.Faces, noise).OfAll, 0.1);
+  EXPECT_THROW(SmoothToFWHM(s.Vertices, s.Faces, smooth, 0.2), std::runtime_error);
+}
+
 TEST(Solve, DataOnTrianglesGiveResultsOnTriangles)
 {
   Fields fields;

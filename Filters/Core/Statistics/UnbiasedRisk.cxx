@@ -68,6 +68,58 @@ double DeviationAt(
   return isOutlier ? std::abs(own - sum / count) : noise;
 }
 
+/// Rows of vertices in between, as their data are made: linearly along the straight line through the
+/// two neighbours between which the vertex lies, the halves of an edge that was bisected, each of
+/// which may be bisected again.
+void InterpolateBetween(const TriangleMesh& mesh, const SparsePattern& pattern,
+  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range,
+  Values& direction)
+{
+  struct Middle
+  {
+    Index Vertex, Ends[2];
+    double Share; ///< of the first end
+  };
+  std::vector<Middle> middles;
+  for (Index i = range.Begin; i < range.End; ++i)
+  {
+    if (!data.Measured->IsBetween[i] || data.Fixed[i])
+    {
+      continue;
+    }
+    const auto to = [&](Index slot) -> Eigen::RowVector3d {
+      return points.row(mesh.InputVertex()[pattern.Inner[slot]]) -
+        points.row(mesh.InputVertex()[i]);
+    };
+    Middle middle{ i, { i, i }, 0.5 };
+    double least = std::numeric_limits<double>::infinity(); // cosine
+    for (Index j = pattern.Outer[i]; j < pattern.Outer[i + 1]; ++j)
+    {
+      for (Index k = pattern.Outer[i]; k < j; ++k)
+      {
+        const double lengthOfJ = to(j).norm();
+        const double lengthOfK = to(k).norm();
+        const double cosine = to(j).dot(to(k)) / (lengthOfJ * lengthOfK);
+        if (cosine < least)
+        {
+          least = cosine;
+          middle = { i, { pattern.Inner[j], pattern.Inner[k] },
+            lengthOfK / (lengthOfJ + lengthOfK) };
+        }
+      }
+    }
+    middles.push_back(middle);
+  }
+  for (int sweep = 0; sweep < 50; ++sweep)
+  {
+    for (const Middle& middle : middles)
+    {
+      direction.row(middle.Vertex) = middle.Share * direction.row(middle.Ends[0]) +
+        (1.0 - middle.Share) * direction.row(middle.Ends[1]);
+    }
+  }
+}
+
 } // namespace
 
 int NumberOfRiskDirections(Index numberOfVertices)
@@ -99,21 +151,9 @@ Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
       ++rank;
     }
   }
-  for (Index i = range.Begin; data.Measured && i < range.End; ++i)
+  if (data.Measured)
   {
-    if (data.Measured->IsBetween[i] && !data.Fixed[i] && data.FidelityFactor(i) > 0.0)
-    {
-      double count = 0.0;
-      for (Index slot = pattern.Outer[i]; slot < pattern.Outer[i + 1]; ++slot)
-      {
-        if (const Index j = pattern.Inner[slot]; isUsed(j))
-        {
-          direction.row(i) += direction.row(j);
-          count += 1.0;
-        }
-      }
-      direction.row(i) /= std::max(count, 1.0);
-    }
+    InterpolateBetween(mesh, pattern, points, data, range, direction);
   }
   return direction;
 }

@@ -41,8 +41,8 @@ struct NoiseResponse
 /// vertices needs.
 int NumberOfRiskDirections(Index numberOfVertices);
 
-/// A random direction p: one row per vertex, 0 where a value is not known or does not change, and the
-/// mean of the neighbours at a vertex whose value was interpolated. Elsewhere it is +-1/sqrt(w_i), or
+/// A random direction p: one row per vertex, 0 where a value is not known or does not change, and
+/// interpolated at a vertex whose value was. Elsewhere it is +-1/sqrt(w_i), or
 /// +-|f_i - the mean of the neighbours|/noise at an outlier, whose value is beyond those of all
 /// neighbours by more than twice the noise, which differences across jumps of the signal are not.
 /// The sign is a hash of the rank of the vertex by its values, and by its place among equal ones, in

@@ -65,7 +65,7 @@ void DiscrepancySearch::FindNext()
 namespace
 {
 
-constexpr int LargestExponent = 28; ///< 2^28 is more than 1e8
+constexpr int LargestExponent = 14; ///< 4^14 is more than 1e8
 constexpr double MostFreedom = 0.98;
 constexpr double LargestExcess = 1.3; ///< of the mean square over that of the level of the noise
 constexpr double SmallestGain = 1e-3; ///< of a factor of 4, of the mean square of the noise
@@ -81,46 +81,35 @@ void RiskSearch::Take(const NoiseResponse& trial)
     this->Best = this->RiskAt(exponent) < this->RiskAt(this->Best) ? exponent : this->Best;
   }
   const double gain = SmallestGain * this->Noise * this->Noise;
-  const int last = this->Trials.rbegin()->first;
   const int first = this->Trials.begin()->first;
-  if (!this->HasMinimum)
+  const int last = this->Trials.rbegin()->first;
+  // Far below the best weights the estimate is flat: it has to rise before the end is upwards.
+  if (last < LargestExponent && this->Trials.at(last).Freedom < MostFreedom &&
+    (last == 0 || this->RiskAt(last) - this->RiskAt(this->Best) < gain))
   {
-    // Far below the best weights the estimate is flat: it has to rise before the end is upwards.
-    if (last < LargestExponent && this->Trials.at(last).Freedom < MostFreedom &&
-      (last == 0 || this->RiskAt(last) - this->RiskAt(this->Best) < gain))
-    {
-      return this->Try(last + 2);
-    }
-    if (this->Best == first && first > -LargestExponent &&
-      (first == 0 || this->RiskAt(first + 2) - this->RiskAt(first) > gain))
-    {
-      return this->Try(first - 2);
-    }
-    this->HasMinimum = this->Best > first && this->Best < last;
-    if (!this->HasMinimum)
-    {
-      this->Done = true;
-      return this->Try(this->Best);
-    }
+    return this->Try(last + 1);
   }
-  for (const int side : { 1, -1 })
+  if (this->Best == first && first > -LargestExponent &&
+    (first == 0 || this->RiskAt(first + 1) - this->RiskAt(first) > gain))
   {
-    if (this->Trials.count(this->Best + side) == 0)
-    {
-      return this->Try(this->Best + side);
-    }
+    return this->Try(first - 1);
   }
-  const double left = this->RiskAt(this->Best - 1) - this->RiskAt(this->Best);
-  const double right = this->RiskAt(this->Best + 1) - this->RiskAt(this->Best);
-  const double shift = left + right > 0.0 ? 0.5 * (left - right) / (left + right) : 0.0;
   this->Done = true;
+  this->HasMinimum = this->Best > first && this->Best < last;
+  double shift = 0.0;
+  if (this->HasMinimum)
+  {
+    const double left = this->RiskAt(this->Best - 1) - this->RiskAt(this->Best);
+    const double right = this->RiskAt(this->Best + 1) - this->RiskAt(this->Best);
+    shift = left + right > 0.0 ? 0.5 * (left - right) / (left + right) : 0.0;
+  }
   this->Try(this->Best + shift);
 }
 
 void RiskSearch::Try(double exponent)
 {
   this->Next = static_cast<int>(exponent);
-  this->X = this->Origin + exponent * std::log(2.0);
+  this->X = this->Origin + exponent * std::log(4.0);
 }
 
 double RiskSearch::RiskAt(int exponent) const

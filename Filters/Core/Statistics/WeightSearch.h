@@ -95,14 +95,14 @@ private:
 /// The weight of the smallest estimate of the error. This is the unbiased risk where the level of
 /// the noise is that of the data's root mean square, too, or given; otherwise the noise has outliers
 /// or differs from place to place, or the data have jumps: then it is that of generalised
-/// cross-validation. Both are flat around the minimum: 1.4 times the best weight costs 1 % of the
-/// error. So the weights start * 2^j are tried: factors of 4 downhill until the smallest has a larger
-/// one on both sides, then the two between; the weight found is the minimum of the parabola through
-/// the smallest and its neighbours, in the logarithm, which depends smoothly on the estimates.
-/// Downwards the search ends where a factor of 4 gains less than 1e-3 of the mean square of the
-/// noise, upwards where hardly anything changes, and both ways near 1e8 of the first guess. Such an
-/// end is found if the difference that it leaves is within 10 % of the noise, as that of noise
-/// without a signal.
+/// cross-validation. Both are flat around the minimum: a factor
+/// of 1.4 costs 1 % of the error. So the weights start * 4^j are tried until the smallest estimate has
+/// a larger one on both sides; the weight found is the minimum of the parabola through the three, in
+/// the logarithm, which depends smoothly on the estimates. (With two more weights between, the errors
+/// are the same.) Downwards the search ends where a factor of 4 gains less than 1e-3 of the mean
+/// square of the noise, upwards where hardly anything changes, and both ways near 1e8 of the first
+/// guess. Such an end is found if the difference that it leaves is within 10 % of the noise, as that
+/// of noise without a signal.
 class RiskSearch : public WeightSearch
 {
 public:
