@@ -224,11 +224,13 @@ Values ColumnSearch::CellDirection(VertexRange range, int number) const
   }
   Values direction = cells.ToVertices(signs, Vector::Ones(cells.NumberOfCells())).Of;
   const double gain = NoiseGain(this->Inputs);
+  const auto isBetween = [&](Index i)
+  { return this->Data.Measured && this->Data.Measured->IsBetween[i]; };
   for (Index i = 0; i < direction.rows(); ++i)
   {
-    const double factor = this->Compared.FidelityFactor(i);
-    const bool isUsed =
-      i >= range.Begin && i < range.End && !this->Compared.Fixed[i] && factor > 0.0;
+    const PointData& data = isBetween(i) ? this->Data : this->Compared;
+    const double factor = data.FidelityFactor(i);
+    const bool isUsed = i >= range.Begin && i < range.End && !data.Fixed[i] && factor > 0.0;
     direction.row(i) *= isUsed ? 1.0 / (gain * std::sqrt(factor)) : 0.0;
   }
   return direction;

@@ -29,8 +29,10 @@ namespace
 /// L1 fidelity of the lagged scheme is rounded below this distance, in R.
 constexpr double L1Rounding = 1e-3;
 
-/// The smallest duality gap of the minimisers that the search for lambda computes.
+/// The smallest duality gaps of the minimisers that the search for lambda computes: the discrepancy of
+/// deblurring needs a smaller one.
 constexpr double SearchTolerance = 1e-2;
+constexpr double BlurSearchTolerance = 1e-3;
 
 /// The gradient at which the diffusivity is judged for the choice of a solver, in R/h.
 constexpr double TypicalGradient = 0.01;
@@ -116,7 +118,8 @@ FidelityWeights TotalVariationModels::FindWeights(RunResult& result) const
 {
   const double h = this->Units.CoreEdgeLength();
   const bool dimensionless = GetEdgeFunction(this->Options.EdgeFunction).Dimensionless;
-  const double tolerance = std::max(SearchTolerance, this->Options.StopTolerance);
+  const double largest = this->Options.Blur.IsOn() ? BlurSearchTolerance : SearchTolerance;
+  const double tolerance = std::max(largest, this->Options.StopTolerance);
   const auto blur = this->Options.Blur.IsOn() ? this->Options.Blur.Make(this->Inputs, {}) : nullptr;
   FidelityTask search;
   search.NoiseLevel = this->Options.NoiseLevel;

@@ -178,7 +178,8 @@ TEST(Run, AutomaticFidelityTakesTheNoiseFromValuesWithAWeight)
       differences.push_back(std::sqrt(squares / area));
     }
     EXPECT_GT(differences[0], 0.1);
-    EXPECT_NEAR(differences[1], differences[0], 0.01 * differences[0]) << static_cast<int>(mode);
+    // Around the smallest risk the difference varies more than the error does.
+    EXPECT_NEAR(differences[1], differences[0], 0.05 * differences[0]) << static_cast<int>(mode);
   }
 }
 
