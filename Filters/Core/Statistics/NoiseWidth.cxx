@@ -14,7 +14,9 @@ namespace
 {
 
 constexpr double Infinity = std::numeric_limits<double>::infinity();
-constexpr int NumberOfParts = 256;
+constexpr std::size_t NumberOfParts = 256;
+/// So few sides of triangles have a part each, so that round-off of lengths groups none otherwise.
+constexpr std::size_t FewSides = 4096;
 const double Rate = 2.0 * std::log(2.0); ///< exp(-d^2/(4 sigma^2)) = exp(-Rate d^2/FWHM^2)
 
 /// The square of the width over the area that takes half of the variance with the mean: 4 pi sigma^2
@@ -75,14 +77,17 @@ NoiseWidth::NoiseWidth(const TriangleMesh& mesh, bool subtractsMean)
   std::stable_sort(order.begin(), order.end(),
     [&](Eigen::Index a, Eigen::Index b) { return squares[a] < squares[b]; });
   this->PartOfEdge.resize(sides);
-  Vector weights = Vector::Zero(NumberOfParts);
-  this->Squares = Vector::Zero(NumberOfParts);
+  const std::size_t parts = sides > FewSides ? NumberOfParts : sides;
+  Vector weights = Vector::Zero(static_cast<Eigen::Index>(parts));
+  this->Squares = weights;
   const double total = areas.sum();
   double sum = 0.0;
-  for (const Eigen::Index side : order)
+  for (std::size_t k = 0; k < sides; ++k)
   {
+    const Eigen::Index side = order[k];
     sum += areas[side];
-    const int part = std::min(NumberOfParts - 1, static_cast<int>(sum / total * NumberOfParts));
+    const auto byArea = static_cast<std::size_t>(sum / total * static_cast<double>(parts));
+    const auto part = static_cast<int>(parts == sides ? k : std::min(parts - 1, byArea));
     this->PartOfEdge[static_cast<std::size_t>(side)] = part;
     weights[part] += this->EdgeWeights[side];
     this->Squares[part] += areas[side];
@@ -101,7 +106,7 @@ void NoiseWidth::Add(const Values& maps)
 NoiseWidth::Column NoiseWidth::Measure(const Values& maps, Eigen::Index column) const
 {
   Column found;
-  found.Variances = Vector::Zero(NumberOfParts);
+  found.Variances = Vector::Zero(this->Squares.size());
   Vector s = maps.col(column);
   double mean = 0.0;
   for (Index i = 0; i < this->Mesh.NumberOfVertices(); ++i)
@@ -160,7 +165,7 @@ double NoiseWidth::OfAll() const
   double count = 0.0;
   double product = 0.0;
   double area = 0.0;
-  Vector variances = Vector::Zero(NumberOfParts);
+  Vector variances = Vector::Zero(this->Squares.size());
   for (const Column& column : this->Columns)
   {
     if (column.Varies())

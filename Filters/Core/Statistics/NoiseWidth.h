@@ -24,7 +24,7 @@ namespace SurfaceDiffusion
 /// d_e^2. If the mean is subtracted, which takes the part q = 4 pi sigma^2/area of the variance, rho -
 /// q and 1 - q stand in place of rho and 1: then the width is at most that of q = 1/2. For edges of one
 /// length this is the estimator of S. Forman et al., Magnetic Resonance in Medicine 33, 1995. Edges
-/// are grouped by their lengths into 256 parts of equal area.
+/// are grouped by their lengths into 256 parts of equal area, where they are many.
 class NoiseWidth
 {
 public:
