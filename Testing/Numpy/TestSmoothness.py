@@ -79,7 +79,7 @@ def exact_noise(surface, fwhm, columns, seed=1):
 def white_noise(surface, columns, seed=2):
     """The variances are those of white noise, 1 over the areas of the points."""
     noise = np.random.default_rng(seed).normal(size=(surface.n_points, columns))
-    return noise / np.sqrt(sd._fwhm._Edges(surface).areas)[:, None]
+    return noise / np.sqrt(surface.vertex_areas)[:, None]
 
 
 class Estimate(unittest.TestCase):
@@ -154,7 +154,7 @@ class Estimate(unittest.TestCase):
         noise = gaussian_noise(surface, 20.0, columns=5)
         expected = sd.estimate_fwhm(surface, noise)
         average = sd.Surface(0.5 * surface.points, surface.triangles,
-                             areas=sd._fwhm._Edges(surface).areas)
+                             areas=surface.vertex_areas)
         self.assert_within(sd.estimate_fwhm(average, noise).pooled, expected.pooled, 1e-4)
 
     def test_missing_points_and_masked_points_are_left_out(self):
