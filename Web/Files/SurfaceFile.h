@@ -24,10 +24,10 @@ using Bytes = std::vector<std::uint8_t>;
 /// Numbers at points or cells.
 struct FileArray
 {
-  std::string Name;
+  std::string Name = {};
   bool OnCells = false;
   std::size_t Components = 1;
-  std::vector<double> Numbers; ///< row after row
+  std::vector<double> Numbers = {}; ///< row after row
   bool AreBytes = false; ///< unsigned char, as colours are
 
   std::size_t Rows() const { return this->Numbers.size() / this->Components; }
@@ -36,13 +36,13 @@ struct FileArray
 /// A surface, or values alone, for which there are no points.
 struct SurfaceFile
 {
-  std::string Kind; ///< the format
-  std::vector<double> Points; ///< three coordinates each
-  std::vector<std::int64_t> Corners; ///< of all cells
+  std::string Kind = {}; ///< the format
+  std::vector<double> Points = {}; ///< three coordinates each
+  std::vector<std::int64_t> Corners = {}; ///< of all cells
   std::vector<std::size_t> Begin = { 0 }; ///< per cell the first of its corners; the end of all
-  std::vector<FileArray> Arrays;
-  std::string Unit; ///< of the coordinates; empty: the file does not say
-  std::vector<std::string> Warnings;
+  std::vector<FileArray> Arrays = {};
+  std::string Unit = {}; ///< of the coordinates; empty: the file does not say
+  std::vector<std::string> Warnings = {};
 
   std::size_t NumberOfPoints() const { return this->Points.size() / 3; }
   std::size_t NumberOfCells() const { return this->Begin.size() - 1; }
