@@ -191,8 +191,8 @@ public:
           const bool isFirst = solution.Arrays.empty();
           const OutputRows rows(output, source);
           const Values& written = solution.Arrays[output.Name] = this->Write(rows, source);
-          solution.Traits[output.Name] = { rows.OnCells(),
-            output.IsResult || output.IsBesideResult, output.Active == Role::Coordinates };
+          solution.Traits[output.Name] = { rows.OnCells(), output.IsResult || output.IsBesideResult,
+            output.Active == Role::Coordinates };
           if (isFirst || isMain)
           {
             solution.Result = written;
@@ -245,8 +245,8 @@ Solution SolveOnce(std::unique_ptr<SurfaceRun> run, const Points& points,
       Problems problems;
       settings.Check(&summary, problems);
       ThrowProblems(problems);
-      NamingSettings(settings,
-        [&] { run->Update(input.Block(run->ExcludesMasked()), settings, progress); });
+      NamingSettings(
+        settings, [&] { run->Update(input.Block(run->ExcludesMasked()), settings, progress); });
       if (const auto* const distance = dynamic_cast<const DistanceRun*>(run.get()))
       {
         DistanceRun::RequireSource({ distance });
@@ -257,6 +257,7 @@ Solution SolveOnce(std::unique_ptr<SurfaceRun> run, const Points& points,
       solution.Warnings = SentencesOf(run->FindWarnings());
       if (const auto* const relief = dynamic_cast<const ReliefRun*>(run.get()))
       {
+        solution.Traits["ReliefHeight"].IsOfData = false; // ResultArrayName has a default in VTK
         const std::vector<char>& turned = relief->TurnedTriangles();
         for (std::size_t t = 0; t < turned.size(); ++t)
         {

@@ -28,12 +28,22 @@ Bytes Inflate(const std::uint8_t* data, std::size_t size, std::uint64_t expected
 {
   constexpr std::uint64_t expansion = 1032; // of the format, at most
   constexpr std::uint64_t largest = std::numeric_limits<int>::max();
-  if (expected > expansion * (std::uint64_t{ size } + 1) || expected > largest || size > largest)
+  if (expected > expansion * (std::uint64_t{ size } + 1) || expected > largest ||
+    size > largest - 4)
   {
     throw FileError(std::to_string(size) + " compressed bytes are announced to become " +
       std::to_string(expected));
   }
   Bytes bytes(static_cast<std::size_t>(expected));
+  Bytes
+    padded; // the decoder looks ahead, to the checksum that only streams of zlib have at their end
+  if (!hasHeader)
+  {
+    padded.assign(data, data + size);
+    padded.resize(size + 4);
+    data = padded.data();
+    size = padded.size();
+  }
   const auto* const from = reinterpret_cast<const char*>(data);
   auto* const to = reinterpret_cast<char*>(bytes.data());
   const auto room = static_cast<int>(expected);

@@ -69,10 +69,19 @@ std::vector<double> ReadText(Content content)
   return corners;
 }
 
-std::vector<double> ReadBinary(Content content)
+std::vector<double> ReadBinary(Content content, SurfaceFile& file)
 {
-  const std::size_t count = static_cast<std::size_t>(
-    (std::min<std::uint64_t>(SizeOfBinary(content), content.Left()) - Header) / Triangle);
+  const std::uint64_t size = SizeOfBinary(content);
+  if (size > content.Left() || content.Left() < Header)
+  {
+    throw FileError("it ends too early");
+  }
+  if (size < content.Left())
+  {
+    file.Warnings.push_back(std::to_string(content.Left() - size) +
+      " bytes after the triangles of its header are not read");
+  }
+  const auto count = static_cast<std::size_t>((size - Header) / Triangle);
   content.Take(Header);
   std::vector<double> corners;
   corners.reserve(9 * count);
@@ -98,9 +107,9 @@ SurfaceFile ReadStl(Content content)
 {
   const bool isText =
     content.Text().substr(0, 4096).find('\0') == std::string_view::npos && !IsBinaryStl(content);
-  const std::vector<double> corners = isText ? ReadText(content) : ReadBinary(content);
   SurfaceFile file;
   file.Kind = "STL";
+  const std::vector<double> corners = isText ? ReadText(content) : ReadBinary(content, file);
   // Corners at one place are one point. The points are in the order of their coordinates.
   std::vector<std::size_t> order(corners.size() / 3);
   std::iota(order.begin(), order.end(), std::size_t{ 0 });

@@ -131,13 +131,14 @@ private:
     Described* open = nullptr;
     while (xml.Next())
     {
+      // Before or after the numbers of an array may be elements that describe it.
+      if (open && open->Text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+      {
+        open->Text = xml.Text();
+      }
       if (xml.IsEnd())
       {
-        if (open && xml.Name() == "DataArray")
-        {
-          open->Text = xml.Text();
-          open = nullptr;
-        }
+        open = xml.Name() == "DataArray" ? nullptr : open;
         if (!parents.empty())
         {
           parents.pop_back();
