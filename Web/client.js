@@ -5,6 +5,13 @@
 /** The error of a run that the user, or a newer file, has ended. */
 class Cancelled extends Error {}
 
+/** The engine's WebAssembly, out of the text in which it was loaded. */
+async function compileEngine() {
+  const packed = Uint8Array.from(atob(ENGINE_WASM), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+}
+
 /**
  * The engine in its worker. A run cannot be interrupted from outside: cancel() ends the worker and starts
  * another one, which opens the same files again.
@@ -15,13 +22,15 @@ class EngineClient {
     const text = `"use strict";var _scriptDir;(${surfaceDiffusionWorker})(${SurfaceDiffusionEngine});`;
     this.script = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
     this.files = []; // [{name, bytes}]: the surface, then files of values
+    this.code = compileEngine();
     this.start();
   }
 
   start() {
     this.waiting = new Map();
     this.last = this.last || 0;
-    this.worker = new Worker(this.script);
+    const worker = this.worker = new Worker(this.script);
+    this.code.then((code) => worker.postMessage({ code }), (problem) => this.refuse(problem));
     this.worker.onmessage = ({ data }) => {
       const call = this.waiting.get(data.id);
       if (!call) { return; }
@@ -41,6 +50,11 @@ class EngineClient {
       event.preventDefault();
       this.restart(new Error(EngineClient.explain(event.message)));
     };
+  }
+
+  /** All calls end with an error, since there is no engine. */
+  refuse(problem) {
+    this.waiting.forEach(({ reject }) => reject(new Error(`The engine cannot start: ${problem.message}`)));
   }
 
   /** One line for what the engine's virtual machine says. */

@@ -134,7 +134,7 @@ class Controls {
       textContent: setting ? setting.help : entry.help });
     input.setAttribute("aria-describedby", help.id);
     let unit = setting ? setting.unit : "";
-    if (unit === "coordinates") { unit = this.unit() || "unit of coordinates"; }
+    if (unit === "coordinates") { unit = this.unit(); }
     const label = makeElement("label", { htmlFor: input.id },
       entry.label || wordsOf(field.property).replace(/ array$/, ""),
       ...(unit && unit !== "1" ? [makeElement("small", { textContent: ` ${unit}` })] : []));
@@ -149,7 +149,8 @@ class Controls {
       if (name === "InputArray") { return index === "3" ? Number(this.association === "cell") : ""; }
       const field = this.fields.find((other) => other.property === name);
       if (field) { return field.number(); }
-      return name in ARRAY_INPUTS ? "" : undefined;
+      // The page has times, but no pipeline to play them.
+      return name in ARRAY_INPUTS ? "" : name === "GenerateTimeSteps" ? 0 : undefined;
     };
     this.fields.forEach((field) => {
       field.row.hidden = Boolean(field.entry.when) && !holds(field.entry.when, valueOf);

@@ -71,12 +71,15 @@ class Page {
     on("lines", "change", () => { this.lines = $("lines").checked; this.showSides(); });
     ["low", "high"].forEach((id) => on(id, "change", () => this.showSides()));
     on("look", "change", () => {
-      if ($("look").value && this.mesh) { this.view.lookFrom($("look").value.split(",").map(Number)); }
+      if ($("look").value && this.mesh) {
+        const [from, up] = $("look").value.split(";").map((text) => text.split(",").map(Number));
+        this.view.lookFrom(from, up);
+      }
       $("look").value = "";
     });
     on("reset", "click", () => this.view.resetCamera());
     on("picture", "click", () => this.savePicture());
-    on("time", "input", () => this.attempt(this.showTime()));
+    on("time", "input", () => this.showTime());
     const over = (event) => {
       event.preventDefault();
       document.body.classList.toggle("dropping", event.type === "dragover");
@@ -333,7 +336,7 @@ class Page {
   /** The engine gets the height of the points as data, as a file of values, when it is first used. */
   async ensureHeight() {
     const { mesh } = this;
-    if ($("array").value !== HEIGHT || arrayNamed(mesh.arrays, HEIGHT)) { return; }
+    if (!this.model.data || $("array").value !== HEIGHT || arrayNamed(mesh.arrays, HEIGHT)) { return; }
     const lines = [HEIGHT];
     for (let i = 2; i < mesh.points.length; i += 3) { lines.push(mesh.points[i]); }
     const { arrays } = await this.client.open("height.csv", new TextEncoder().encode(lines.join("\n") + "\n"));
@@ -343,7 +346,7 @@ class Page {
   }
 
   /** Runs a model, as by Apply. Returns arrays by name, moved points, history, numbers and warnings. */
-  async run(model, options = {}, notes = []) {
+  async run(model, options = {}, notes = [], shown = null) {
     await this.ready;
     if (!this.mesh) { throw new Error("There is no surface; open a file first."); }
     const { mesh } = this, start = performance.now(), number = ++this.runs;
@@ -360,12 +363,13 @@ class Page {
       this.enable();
     }
     if (mesh !== this.mesh) { throw new Cancelled("Another file has been opened."); }
-    this.result = { ...found, model, input: options.array || "", points: found.coordinates };
+    this.result = { ...found, model, options, input: options.array || "", points: found.coordinates };
     this.saveLater();
     const names = found.arrays.map(({ name }) => name);
     $("shown").replaceChildren(...found.arrays.map(({ name }) => makeElement("option", { value: name, textContent: name })),
       makeElement("option", { value: "", textContent: "the surface alone" }));
-    $("shown").value = found.coordinates ? "" : mainResult(names, this.result.input);
+    $("shown").value = shown !== null ? shown : found.coordinates ? "" : mainResult(names, this.result.input);
+    if (shown === null) { this.offerTimes(); }
     const seconds = ((performance.now() - start) / 1000).toFixed(2);
     this.say([...notes, `Done in ${seconds} s.`].join("\n"), "", found.warnings);
     this.showNumbers();
@@ -450,14 +454,38 @@ class Page {
   async showResult() {
     const { result, mesh } = this, array = arrayNamed(result.arrays, $("shown").value);
     if (array && !array.shown) { array.shown = prepareValues(array, mesh.cells); }
-    const times = result.times || [];
-    $("times").hidden = times.length < 2;
-    if (times.length > 1) {
-      $("time").max = times.length - 1;
-      $("time").value = times.length - 1;
-      $("time-value").textContent = shortNumber(times[times.length - 1]);
-    }
     this.showSides();
+  }
+
+  /** Offers the steps of a run that has time steps of one length: a run of fewer steps is a state on the way. */
+  offerTimes() {
+    const { times, model, options } = this.result, steps = times ? times.length - 1 : 0;
+    const hasSteps = this.models.find(({ name }) => name === model).settings.some(({ name }) => name === "time_step");
+    const isSteady = options.mode === "SteadyState" || options.automatic_time_step || !hasSteps
+      || !this.result.history.some(({ name }) => name === "Time") || model === "mumford_shah";
+    this.series = steps > 1 && !isSteady ? { model, options, times } : null;
+    $("times").hidden = !this.series;
+    if (this.series) {
+      $("time").max = steps;
+      $("time").value = steps;
+      $("time-value").textContent = shortNumber(times[steps]);
+    }
+  }
+
+  /** Runs to the step that the slider is at; while it moves on, only to the last one. */
+  showTime() {
+    const step = Number($("time").value), { series } = this, steps = series.times.length - 1;
+    $("time-value").textContent = shortNumber(series.times[step]);
+    clearTimeout(this.timer);
+    this.timer = setTimeout(async () => {
+      if (this.running) {
+        this.showTime();
+        return;
+      }
+      const options = { ...series.options, number_of_time_steps: step };
+      if (options.fwhm) { options.fwhm *= Math.sqrt(step / steps); } // squared widths add
+      await this.attempt(this.run(series.model, options, [`Step ${step} of ${steps}.`], $("shown").value));
+    }, 150);
   }
 
   /** What is on the left and on the right. */

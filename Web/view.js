@@ -339,9 +339,9 @@ class SurfaceView {
     this.lookFrom(from);
   }
 
-  /** from: the direction to the camera. z is up, or y where that is the view's direction. */
-  lookFrom(from) {
-    const back = unit(from), up = Math.abs(back[2]) > 0.93 ? [0, 1, 0] : [0, 0, 1];
+  /** from: the direction to the camera. up: by default z, or y where that is the view's direction. */
+  lookFrom(from, up = Math.abs(unit(from)[2]) > 0.93 ? [0, 1, 0] : [0, 0, 1]) {
+    const back = unit(from);
     const right = unit(cross(up, back));
     this.turn = [right, cross(back, right), back]; // rows
     this.fit();

@@ -22,7 +22,13 @@ function surfaceDiffusionWorker(makeEngine) {
       return false; // a run is cancelled by the end of its worker
     },
   };
-  const ready = makeEngine(options);
+  // The first message is the compiled engine; no worker compiles it again.
+  let started = null;
+  const ready = new Promise((resolve) => { started = resolve; }).then((code) => makeEngine({ ...options,
+    instantiateWasm: (imports, done) => {
+      WebAssembly.instantiate(code, imports).then((instance) => done(instance));
+      return {};
+    } }));
 
   /** A copy, if these numbers lie in the engine's memory, which they must not leave. */
   const own = (numbers, engine) =>
@@ -51,7 +57,11 @@ function surfaceDiffusionWorker(makeEngine) {
     return value && typeof value === "object" ? Object.values(value).flatMap(buffersOf) : [];
   };
 
-  self.onmessage = async ({ data: { id, call, args } }) => {
+  self.onmessage = async ({ data: { id, call, args, code } }) => {
+    if (code) {
+      started(code);
+      return;
+    }
     try {
       const engine = await ready;
       current = id;
