@@ -182,7 +182,8 @@ class Page {
   }
 
   offerArrays(chosen) {
-    const before = chosen || $("array").value, { arrays } = this.mesh, { data } = this.model;
+    this.chosen = chosen || $("array").value || this.chosen; // also while a model takes none
+    const { arrays } = this.mesh, { data } = this.model;
     const options = arrays.map(({ name, association, components }) => makeElement("option", { value: name,
       textContent: name + (components > 1 ? `, ${components} components` : "")
         + (association === "cell" ? ", on cells" : "") }));
@@ -190,8 +191,7 @@ class Page {
     if (none) { options.unshift(makeElement("option", { value: "", textContent: none })); }
     if (!arrays.length && !none) { options.push(makeElement("option", { value: HEIGHT, textContent: HEIGHT })); }
     $("array").replaceChildren(...options);
-    if ([...options].some(({ value }) => value === before)) { $("array").value = before; }
-    else if (none) { $("array").value = ""; }
+    if (!none && options.some(({ value }) => value === this.chosen)) { $("array").value = this.chosen; }
     $("array-row").firstElementChild.textContent = data ? "Data" : "Shown";
     this.showControls();
   }

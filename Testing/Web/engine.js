@@ -21,7 +21,8 @@ function encode(value) {
     : value;
 }
 
-makeEngine().then((engine) => {
+const { readFileSync } = require("fs");
+makeEngine({ wasmBinary: readFileSync(process.argv[2].replace(/js$/, "wasm")) }).then((engine) => {
   let calls = 0;
   engine.onProgress = () => { calls += 1; return false; };
   readline.createInterface({ input: process.stdin }).on("line", (line) => {
