@@ -76,23 +76,45 @@ std::string RunModel(const std::string& model, const std::string& json)
     });
 }
 
+val CopyPoints(const Domain& domain)
+{
+  return Copy(domain.Points.data(), static_cast<std::size_t>(domain.Points.size()));
+}
+
+val CopyTriangles(const Domain& domain)
+{
+  return Copy(reinterpret_cast<const std::uint32_t*>(domain.Triangles.data()),
+    static_cast<std::size_t>(domain.Triangles.size()));
+}
+
+val CopyCells(const std::vector<Index>& cells)
+{
+  return Copy(reinterpret_cast<const std::uint32_t*>(cells.data()), cells.size());
+}
+
 val GetPoints()
 {
-  const Points& points = TheEngine().Points();
-  return Copy(points.data(), static_cast<std::size_t>(points.size()));
+  return CopyPoints(TheEngine().Surface());
 }
 
 val GetTriangles()
 {
-  const Triangles& triangles = TheEngine().Triangles();
-  return Copy(reinterpret_cast<const std::uint32_t*>(triangles.data()),
-    static_cast<std::size_t>(triangles.size()));
+  return CopyTriangles(TheEngine().Surface());
 }
 
 val GetCellOfTriangle()
 {
-  const std::vector<Index>& cells = TheEngine().CellOfTriangle();
-  return Copy(reinterpret_cast<const std::uint32_t*>(cells.data()), cells.size());
+  return CopyCells(TheEngine().Surface().Cells);
+}
+
+val GetResultTriangles()
+{
+  return CopyTriangles(TheEngine().ResultSurface());
+}
+
+val GetResultCellOfTriangle()
+{
+  return CopyCells(TheEngine().ResultSurface().OwnCells());
 }
 
 val GetArray(const std::string& name, const std::string& association)
@@ -107,8 +129,9 @@ val GetResultArray(const std::string& name)
 
 val GetResultPoints()
 {
-  const std::vector<double>* const points = TheEngine().ResultPoints();
-  return points ? Copy(*points) : val::null();
+  const double* const points = TheEngine().ResultPoints();
+  const auto size = static_cast<std::size_t>(TheEngine().ResultSurface().Points.size());
+  return points ? Copy(points, size) : val::null();
 }
 
 val WriteSurface(const std::string& name)
@@ -134,5 +157,7 @@ EMSCRIPTEN_BINDINGS(engine)
   emscripten::function("run", &RunModel);
   emscripten::function("resultArray", &GetResultArray);
   emscripten::function("resultPoints", &GetResultPoints);
+  emscripten::function("resultTriangles", &GetResultTriangles);
+  emscripten::function("resultCellOfTriangle", &GetResultCellOfTriangle);
   emscripten::function("write", &WriteSurface);
 }

@@ -3,11 +3,11 @@
 #include "Engine.h"
 
 #include "Core/Foundation/LoopWatch.h"
-#include "Core/Surface/Polygons.h"
 #include "Json.h"
-#include "Run/FieldChecks.h"
+#include "Run/InputSentences.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -20,143 +20,15 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
-
 const char* PlaceOf(const Files::FileArray& array)
 {
   return array.OnCells ? "cell" : "point";
 }
 
-std::string DescribeArray(const Files::FileArray& array)
+std::string ArrayAsJson(const Files::FileArray& array)
 {
   return "{\"name\":" + Json::Quoted(array.Name) + ",\"association\":\"" + PlaceOf(array) +
     "\",\"components\":" + std::to_string(array.Components) + "}";
-}
-
-double MeanEdgeLength(const Points& points, const Triangles& triangles)
-{
-  double sum = 0.0;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      sum += (points.row(triangles(t, k)) - points.row(triangles(t, (k + 1) % 3))).norm();
-    }
-  }
-  return triangles.rows() > 0 ? sum / (3.0 * static_cast<double>(triangles.rows())) : 0.0;
-}
-
-/// The normalised sums of the unit normals of the triangles at each point, in single precision as
-/// numpy and VTK have them.
-Values PointNormals(const Points& points, const Triangles& triangles)
-{
-  Values normals = Values::Zero(points.rows(), 3);
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-  {
-    const Eigen::RowVector3d origin = points.row(triangles(t, 1));
-    const Eigen::RowVector3d normal = (points.row(triangles(t, 2)) - origin)
-                                        .cross(points.row(triangles(t, 0)) - origin)
-                                        .stableNormalized();
-    for (int k = 0; k < 3; ++k)
-    {
-      normals.row(triangles(t, k)) += normal;
-    }
-  }
-  normals.rowwise().normalize();
-  return normals.cast<float>().cast<double>();
-}
-
-std::vector<char> AsFlags(const std::vector<double>& numbers, bool isInverse)
-{
-  std::vector<char> flags(numbers.size());
-  std::transform(numbers.begin(), numbers.end(), flags.begin(),
-    [&](double x) { return isInverse ? x == 0.0 || x != x : x != 0.0; });
-  return flags;
-}
-
-Values AsMatrix(const Files::FileArray& array)
-{
-  return Eigen::Map<const Values>(array.Numbers.data(), static_cast<Eigen::Index>(array.Rows()),
-    static_cast<Eigen::Index>(array.Components));
-}
-
-/// Rows of cells for the triangles that they were cut into.
-template <typename Matrix>
-Matrix OnTriangles(const Matrix& ofCells, const std::vector<Index>& cells)
-{
-  Matrix rows(static_cast<Eigen::Index>(cells.size()), ofCells.cols());
-  for (Eigen::Index t = 0; t < rows.rows(); ++t)
-  {
-    rows.row(t) = ofCells.row(cells[static_cast<std::size_t>(t)]);
-  }
-  return rows;
-}
-
-std::vector<std::string> WordsOf(const char* text)
-{
-  std::vector<std::string> words(1);
-  for (; *text != 0; ++text)
-  {
-    if (*text == ' ')
-    {
-      words.emplace_back();
-      continue;
-    }
-    words.back() += *text;
-  }
-  return words;
-}
-
-/// Chosen points, as a list of their numbers or {points, values}.
-struct Chosen
-{
-  std::vector<Index> Points;
-  std::vector<double> Values; ///< per point; empty: none are given
-};
-
-Chosen ReadChosen(const std::string& name, const val& given, Eigen::Index points)
-{
-  Chosen chosen;
-  const val numbers = given.isArray() ? given : given["points"];
-  if (!numbers.isArray())
-  {
-    throw std::runtime_error(
-      name + " is neither the name of an array nor a list of points; allowed: one of these");
-  }
-  for (const double number : emscripten::vecFromJSArray<double>(numbers))
-  {
-    if (!(number >= 0.0 && number < static_cast<double>(points)) || number != std::floor(number))
-    {
-      throw std::runtime_error(name + " has the point " + Json::Number(number) +
-        "; allowed: 0 to " + std::to_string(points - 1));
-    }
-    chosen.Points.push_back(static_cast<Index>(number));
-  }
-  if (!given.isArray() && given["values"].isArray())
-  {
-    chosen.Values = emscripten::vecFromJSArray<double>(given["values"]);
-    if (chosen.Values.size() != chosen.Points.size())
-    {
-      throw std::runtime_error(name + " has " + std::to_string(chosen.Values.size()) +
-        " values at " + std::to_string(chosen.Points.size()) + " points; allowed: one each");
-    }
-  }
-  return chosen;
-}
-
-/// An array with a number at each of the chosen points, and `elsewhere` at all others.
-Files::FileArray ArrayOf(
-  const std::string& name, const Chosen& chosen, Eigen::Index points, double elsewhere)
-{
-  Files::FileArray array;
-  array.Name = name;
-  array.Numbers.assign(static_cast<std::size_t>(points), elsewhere);
-  for (std::size_t k = 0; k < chosen.Points.size(); ++k)
-  {
-    array.Numbers[static_cast<std::size_t>(chosen.Points[k])] =
-      chosen.Values.empty() ? static_cast<double>(k + 1) : chosen.Values[k];
-  }
-  return array;
 }
 
 } // namespace
@@ -178,60 +50,26 @@ std::string Engine::Open(const std::string& name, const Files::Bytes& content)
   }
   else
   {
-    this->TakeSurface(std::move(file));
+    this->Given = Domain::Of(file);
+    this->File = std::move(file);
+    this->Fine = Domain();
+    this->Samples = Files::SurfaceFile();
+    this->TakeResults({}, {});
   }
   return this->Describe();
 }
 
-void Engine::TakeSurface(Files::SurfaceFile file)
-{
-  if (file.NumberOfPoints() > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
-  {
-    throw std::runtime_error("the surface has more points than this library can number");
-  }
-  const SurfaceDiffusion::Points points = Eigen::Map<const SurfaceDiffusion::Points>(
-    file.Points.data(), static_cast<Eigen::Index>(file.NumberOfPoints()), 3);
-  RequireFiniteCoordinates(points);
-  std::vector<Index> corners;
-  std::vector<Index> cells;
-  std::vector<Eigen::RowVector3d> polygon;
-  corners.reserve(file.Corners.size());
-  for (std::size_t c = 0; c < file.NumberOfCells(); ++c)
-  {
-    const std::int64_t* const cell = file.Corners.data() + file.Begin[c];
-    const std::size_t size = file.Begin[c + 1] - file.Begin[c];
-    std::vector<Corners> triangles = { { { 0, 1, 2 } } };
-    if (size != 3)
-    {
-      polygon.clear();
-      for (std::size_t k = 0; k < size; ++k)
-      {
-        polygon.emplace_back(points.row(static_cast<Eigen::Index>(cell[k])));
-      }
-      triangles = CutPolygon(polygon);
-    }
-    for (const Corners& triangle : triangles)
-    {
-      for (const int corner : triangle)
-      {
-        corners.push_back(static_cast<Index>(cell[corner]));
-      }
-      cells.push_back(static_cast<Index>(c));
-    }
-  }
-  this->File = std::move(file);
-  this->Coordinates = points;
-  this->TriangleRows = Eigen::Map<const SurfaceDiffusion::Triangles>(
-    corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3);
-  this->Cells = std::move(cells);
-  this->TakeResults({}, {});
-}
-
 void Engine::AddValues(Files::SurfaceFile file)
 {
-  if (this->Cells.empty())
+  if (this->Given.Cells.empty())
   {
     throw std::runtime_error("the file has values and no surface; open its surface first");
+  }
+  const std::size_t places = file.NumberOfPoints();
+  if (places > 0 && places != this->File.NumberOfPoints())
+  {
+    this->Samples = std::move(file); // places with values, for interpolation
+    return;
   }
   for (Files::FileArray& array : file.Arrays)
   {
@@ -265,12 +103,13 @@ std::string Engine::Describe() const
     return "{\"corners\":" + std::to_string(entry.first) +
       ",\"count\":" + std::to_string(entry.second) + "}";
   };
-  return "{\"points\":" + std::to_string(this->Coordinates.rows()) +
-    ",\"triangles\":" + std::to_string(this->TriangleRows.rows()) +
+  return "{\"points\":" + std::to_string(this->Given.Points.rows()) +
+    ",\"triangles\":" + std::to_string(this->Given.Triangles.rows()) +
     ",\"polygons\":" + Json::List(sizes, describeSize) +
-    ",\"arrays\":" + Json::List(this->File.Arrays, DescribeArray) +
+    ",\"arrays\":" + Json::List(this->File.Arrays, ArrayAsJson) +
+    ",\"samples\":" + Json::List(this->Samples.Arrays, ArrayAsJson) +
     ",\"kind\":" + Json::Quoted(this->File.Kind) + ",\"unit\":" + Json::Quoted(this->File.Unit) +
-    ",\"meanEdgeLength\":" + Json::Number(MeanEdgeLength(this->Coordinates, this->TriangleRows)) +
+    ",\"meanEdgeLength\":" + Json::Number(this->Given.MeanEdgeLength()) +
     ",\"warnings\":" + Json::List(this->File.Warnings, Json::Quoted) + "}";
 }
 
@@ -310,124 +149,50 @@ const Files::FileArray& Engine::ResultArray(const std::string& name) const
   throw std::runtime_error("there is no result " + name);
 }
 
-SurfaceData Engine::ReadInputs(
-  const NamedSettings& model, const val& given, std::string& dataName, bool& excludes) const
+const Domain& Engine::Refine(const val& given, const Settings& settings,
+  const ProgressMonitor& progress, std::vector<std::string>& warnings)
 {
-  SurfaceData data;
-  const std::string association =
-    given["association"].isString() ? given["association"].as<std::string>() : "";
-  const Eigen::Index points = this->Coordinates.rows();
-  const std::string dataWord = model.Data;
-
-  // Each array by its name in Python, the data also as "array".
-  const auto read = [&](const std::string& word, const val& value, double elsewhere)
+  this->Fine = Domain();
+  const auto* const texture = dynamic_cast<const TextureSettings*>(&settings);
+  const auto read = [&](const char* name, double otherwise)
   {
-    if (value.isString())
+    const val value = given[name];
+    if (value.isUndefined())
     {
-      const auto name = value.as<std::string>();
-      const Files::FileArray* const known =
-        this->Find(name, word == dataWord ? association : std::string());
-      return known ? *known : this->Array(name, "");
+      return otherwise;
     }
-    return ArrayOf(word, ReadChosen(word, value, points), points, elsewhere);
+    return value.isNumber() ? value.as<double>() : std::numeric_limits<double>::quiet_NaN();
   };
-  const auto isGiven = [](const val& value) { return !value.isUndefined() && !value.isNull(); };
-
-  val ofData = isGiven(given["array"]) || dataWord.empty() ? given["array"] : given[dataWord];
-  data.DataAreTerms = dataWord == "values" && isGiven(given["terms"]);
-  ofData = data.DataAreTerms ? given["terms"] : ofData;
-  const bool takesPoints = dataWord == "sources" && isGiven(ofData) && !ofData.isString();
-  if (takesPoints)
+  double length = read("refine_to", texture ? -1.0 : 0.0);
+  const double limit = read("maximum_number_of_triangles", 4e6);
+  const int most = limit >= 1.0 && limit < 2147483647.0 && limit == std::floor(limit)
+    ? static_cast<int>(limit)
+    : 0;
+  Problems problems;
+  CheckSurfaceProperties(0.0, length, texture != nullptr, most, 0, problems);
+  ThrowProblems(problems);
+  const double mean = this->Given.MeanEdgeLength();
+  const bool isAutomatic = length < 0.0;
+  if (isAutomatic)
   {
-    const Chosen chosen = ReadChosen(dataWord, ofData, points);
-    auto sources = std::make_shared<SourceShapes>();
-    sources->OfPoints = chosen.Points;
-    sources->StartTimes = chosen.Values;
-    data.Sources = std::move(sources);
+    length = texture->FeatureSize > 0.0 ? texture->EdgeLengthForFeatures(mean) : 0.0;
   }
-  else if (isGiven(ofData) && !dataWord.empty())
+  if (length > 0.0)
   {
-    const Files::FileArray array = read(dataWord, ofData, NaN);
-    dataName = ofData.isString() ? array.Name : std::string();
-    data.DataName = Word::Array("InputArray", dataName.empty() ? "" : " \"" + dataName + "\"");
-    data.Data = { AsMatrix(array), array.OnCells };
-    data.DataAreBytes = array.AreBytes;
+    this->Fine = this->Given.Refined(length, most, progress, warnings);
   }
-  else if (dataWord == "vectors")
+  if (!this->Fine.IsRefined)
   {
-    data.Data.Values = PointNormals(this->Coordinates, this->TriangleRows);
-    dataName = "Normals";
+    this->Fine = Domain();
+    return this->Given;
   }
-
-  for (const std::string& word : WordsOf(model.Inputs))
+  if (isAutomatic)
   {
-    const val value = given[word];
-    if (!isGiven(value))
-    {
-      continue;
-    }
-    const Files::FileArray array = read(word, value, 0.0);
-    const auto require = [&](std::size_t components)
-    {
-      if (array.Components != components)
-      {
-        throw std::runtime_error(word + " " + array.Name + " has " +
-          std::to_string(array.Components) + " components; allowed: " + std::to_string(components));
-      }
-    };
-    if (word == "directions" || word == "hints")
-    {
-      require(3);
-      data.Directions = { AsMatrix(array), array.OnCells };
-      if (array.OnCells)
-      {
-        data.Directions.Values = OnTriangles(data.Directions.Values, this->Cells);
-      }
-      continue;
-    }
-    if (word == "rates")
-    {
-      require(4);
-      if (!array.OnCells)
-      {
-        throw std::runtime_error("rates is an array of points; allowed: one of cells");
-      }
-      data.Rates = OnTriangles(AsMatrix(array), this->Cells);
-      continue;
-    }
-    require(1);
-    if (word == "mask" || word == "roi")
-    {
-      excludes = excludes || word == "roi";
-      data.Mask = { AsFlags(array.Numbers, word == "roi"), array.OnCells };
-    }
-    else if (word == "fixed")
-    {
-      data.Fixed = { AsFlags(array.Numbers, false), array.OnCells };
-    }
-    else if (word == "fidelity")
-    {
-      data.FidelityFactors = { array.Numbers, array.OnCells };
-    }
-    else if (word == "seeds")
-    {
-      data.Seeds = AsLabels({ array.Numbers, array.OnCells }, Word::Array("SeedArray"));
-    }
-    else if (word == "speed")
-    {
-      data.Speeds = { array.Numbers, array.OnCells };
-    }
-    else if (word == "start")
-    {
-      data.StartTimes = array.Numbers;
-    }
+    const double size = texture->FeatureSize;
+    warnings.push_back(
+      Say("Bisected", this->Fine.NumberOfCells, Say("Features", size, size / mean)).Text());
   }
-  if (data.HasCells())
-  {
-    data.Cells = this->Cells;
-    data.NumberOfCells = static_cast<Index>(this->File.NumberOfCells());
-  }
-  return data;
+  return this->Fine;
 }
 
 std::string Engine::Run(
@@ -438,26 +203,19 @@ std::string Engine::Run(
   {
     throw std::runtime_error("there is no model " + name);
   }
-  if (this->Cells.empty())
+  if (this->Given.Cells.empty())
   {
     throw std::runtime_error("there is no surface; open the file of one first");
   }
   std::unique_ptr<Settings> settings = model->Make();
   std::vector<std::string> others = WordsOf(model->Inputs);
-  others.insert(others.end(), { "array", "association", model->Data });
+  others.insert(others.end(),
+    { "array", "association", model->Data, "refine_to", "maximum_number_of_triangles" });
   if (std::string(model->Inputs).find("seeds") != std::string::npos)
   {
     others.emplace_back("terms");
   }
   AssignSettings(*model, *settings, given, others);
-  std::string dataName;
-  bool excludes = false;
-  const SurfaceData data = this->ReadInputs(*model, given, dataName, excludes);
-  if (auto* const ofRun = dynamic_cast<RunSettings*>(settings.get()); ofRun && excludes)
-  {
-    ofRun->MaskMode = MaskMode::Exclude;
-  }
-
   double reached = 0.0;
   const ProgressMonitor::Callback report = [&](double fraction)
   {
@@ -465,11 +223,22 @@ std::string Engine::Run(
     return progress(reached);
   };
   Solution solution;
+  std::string dataName;
+  std::vector<std::string> warnings;
   {
     const LoopWatch watch([&] { return progress(reached); });
-    solution = SolveModel(*model, this->Coordinates, this->TriangleRows, data, std::move(settings),
-      SerialFor(), ProgressMonitor(report));
+    const ProgressMonitor monitor(report);
+    const Domain& domain = this->Refine(given, *settings, monitor.Part(0.0, 0.1), warnings);
+    bool excludes = false;
+    const SurfaceData data = this->ReadInputs(*model, given, domain, dataName, excludes);
+    if (auto* const ofRun = dynamic_cast<RunSettings*>(settings.get()); ofRun && excludes)
+    {
+      ofRun->MaskMode = MaskMode::Exclude;
+    }
+    solution = SolveModel(
+      *model, domain.Points, domain.Triangles, data, std::move(settings), SerialFor(), monitor);
   }
+  solution.Warnings.insert(solution.Warnings.begin(), warnings.begin(), warnings.end());
   this->TakeResults(solution, dataName);
 
   std::vector<std::pair<std::string, std::vector<double>>> history;
@@ -500,8 +269,9 @@ std::string Engine::Run(
     const std::vector<double> numbers(matrix.data(), matrix.data() + matrix.size());
     return matrix.size() == 1 ? Json::Number(numbers[0]) : Json::List(numbers);
   };
-  return "{\"arrays\":" + Json::List(this->Results, DescribeArray) +
-    ",\"points\":" + Json::Bool(!this->MovedPoints.empty()) + ",\"history\":" +
+  return "{\"arrays\":" + Json::List(this->Results, ArrayAsJson) +
+    ",\"points\":" + Json::Bool(this->ResultPoints() != nullptr) +
+    ",\"refined\":" + Json::Bool(this->Fine.IsRefined) + ",\"history\":" +
     Json::List(history,
       [](const auto& column)
       {
@@ -547,22 +317,45 @@ void Engine::TakeResults(const Solution& solution, const std::string& dataName)
   }
 }
 
+const double* Engine::ResultPoints() const
+{
+  return this->MovedPoints.empty() ? (this->Fine.IsRefined ? this->Fine.Points.data() : nullptr)
+                                   : this->MovedPoints.data();
+}
+
 Files::Bytes Engine::Write(const std::string& name) const
 {
-  if (this->Cells.empty())
+  if (this->Given.Cells.empty())
   {
     throw std::runtime_error("there is no surface to write");
   }
   Files::SurfaceFile file = this->File;
-  if (!this->MovedPoints.empty())
+  const Domain& domain = this->ResultSurface();
+  if (domain.IsRefined)
   {
-    file.Points = this->MovedPoints;
+    for (Files::FileArray& array : file.Arrays)
+    {
+      array = domain.Carry(std::move(array), "");
+    }
+    file.Corners.assign(domain.Triangles.data(), domain.Triangles.data() + domain.Triangles.size());
+    file.Begin = { 0 };
+    for (std::size_t end = 3; end <= file.Corners.size(); end += 3)
+    {
+      file.Begin.push_back(end);
+    }
   }
+  if (const double* const points = this->ResultPoints())
+  {
+    file.Points.assign(points, points + domain.Points.size());
+  }
+  const std::vector<Index> cells = domain.OwnCells();
   for (const Index t : this->Turned)
   {
-    const std::size_t first =
-      file.Begin[static_cast<std::size_t>(this->Cells[static_cast<std::size_t>(t)])];
-    std::swap(file.Corners[first + 1], file.Corners[first + 2]);
+    const auto cell = static_cast<std::size_t>(cells[static_cast<std::size_t>(t)]);
+    if (file.Begin[cell + 1] - file.Begin[cell] == 3)
+    {
+      std::swap(file.Corners[file.Begin[cell] + 1], file.Corners[file.Begin[cell] + 2]);
+    }
   }
   for (const Files::FileArray& result : this->Results)
   {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Domain.h"
 #include "Files/SurfaceFile.h"
 #include "Run/Solve.h"
 
@@ -19,6 +20,9 @@ std::string DescribeModels();
 
 /// The name of a setting in Python: "NumberOfTimeSteps" is number_of_time_steps.
 std::string PythonName(const std::string& setting);
+
+/// The words of a text with single spaces.
+std::vector<std::string> WordsOf(const char* text);
 
 /// Give settings the values of a JavaScript object, by their names in Python. Throws
 /// std::runtime_error on names that are neither settings nor among `others`, and on other types.
@@ -40,34 +44,37 @@ public:
   /// The surface with the results, in the format that the name ends in.
   Files::Bytes Write(const std::string& name) const;
 
-  const SurfaceDiffusion::Points& Points() const { return this->Coordinates; }
-  const SurfaceDiffusion::Triangles& Triangles() const { return this->TriangleRows; }
-  const std::vector<Index>& CellOfTriangle() const { return this->Cells; }
+  const Domain& Surface() const { return this->Given; }
+  /// That the last results belong to.
+  const Domain& ResultSurface() const { return this->Fine.IsRefined ? this->Fine : this->Given; }
   /// association: "point" or "cell".
   const Files::FileArray& Array(const std::string& name, const std::string& association) const;
   const Files::FileArray& ResultArray(const std::string& name) const;
-  /// Null if they have not moved.
-  const std::vector<double>* ResultPoints() const
-  {
-    return this->MovedPoints.empty() ? nullptr : &this->MovedPoints;
-  }
+  /// Null if they are those of the surface.
+  const double* ResultPoints() const;
 
 private:
   std::string Describe() const;
-  void TakeSurface(Files::SurfaceFile file);
   void AddValues(Files::SurfaceFile file);
   const Files::FileArray* Find(const std::string& name, const std::string& association) const;
+  /// The surface that a run works on, by refine_to and maximum_number_of_triangles.
+  const Domain& Refine(const emscripten::val& given, const Settings& settings,
+    const ProgressMonitor& progress, std::vector<std::string>& warnings);
+  /// dataName: gets the name of the data; excludes: whether a region of interest was given.
   SurfaceData ReadInputs(const NamedSettings& model, const emscripten::val& given,
-    std::string& dataName, bool& excludes) const;
+    const Domain& domain, std::string& dataName, bool& excludes) const;
+  /// Whether the name is that of values beside the surface, which the data are then.
+  bool ReadSamples(const NamedSettings& model, const std::string& name, std::string& dataName,
+    SurfaceData& data) const;
   void TakeResults(const Solution& solution, const std::string& dataName);
 
   Files::SurfaceFile File;
-  SurfaceDiffusion::Points Coordinates;
-  SurfaceDiffusion::Triangles TriangleRows;
-  std::vector<Index> Cells; ///< the cell of each triangle
+  Domain Given;
+  Domain Fine; ///< of the last run, if it refined the surface
   std::vector<Files::FileArray> Results;
   std::vector<double> MovedPoints;
   std::vector<Index> Turned; ///< the triangles that a relief has turned
+  Files::SurfaceFile Samples; ///< places with values, beside the surface
 };
 
 } // namespace SurfaceDiffusion

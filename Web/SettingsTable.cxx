@@ -68,6 +68,20 @@ public:
       SettingRange::Anything(), Json::List(usable, Json::Quoted));
   }
 
+  /// The keywords that all functions of Python have beside the settings of the model.
+  void AddRefinement(bool mayBeAutomatic)
+  {
+    double length = mayBeAutomatic ? -1.0 : 0.0;
+    int most = 4000000;
+    this->Number({ "RefineTo", "length",
+                   "Edges that are longer are bisected first, in the unit of "
+                   "the coordinates, and the data go along. 0: the surface stays as it is. -1, for "
+                   "textures: FeatureSize / 8 if that is less than 6 mean edge lengths." },
+      length, SettingRange::NonNegativeOr(length, "0 or more"));
+    this->Integer({ "MaximumNumberOfTriangles", "", "Refinement stops before there are more." },
+      most, SettingRange::AtLeast(1.0, "1 or more"));
+  }
+
   std::vector<std::string> Entries;
 
 private:
@@ -236,7 +250,9 @@ std::string DescribeModels()
   const auto describe = [](const NamedSettings& model)
   {
     Lister lister;
-    model.Make()->Visit(lister);
+    const std::unique_ptr<Settings> settings = model.Make();
+    settings->Visit(lister);
+    lister.AddRefinement(dynamic_cast<const TextureSettings*>(settings.get()) != nullptr);
     std::vector<std::string> inputs;
     std::string word;
     for (const char c : std::string(model.Inputs) + ' ')
