@@ -236,6 +236,10 @@ SurfaceFile ReadFile(const std::string& name, const std::uint8_t* data, std::siz
 Bytes WriteFile(const std::string& name, const SurfaceFile& surface)
 {
   const std::string ending = EndingOf(name);
+  if (surface.NumberOfCells() == 0)
+  {
+    throw FileError(name + ": there are values alone; allowed: a surface");
+  }
   const bool hasTriangles = surface.Corners.size() == 3 * surface.NumberOfCells();
   SurfaceFile cut;
   const SurfaceFile* triangles = &surface;
