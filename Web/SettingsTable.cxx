@@ -278,7 +278,16 @@ std::string DescribeModels()
 void AssignSettings(const NamedSettings& model, Settings& settings, const val& given,
   const std::vector<std::string>& others)
 {
-  Assigner assigner(given);
+  val whole = val::global("Object").call<val>("assign", val::object(), given);
+  const std::vector<std::string> found = WordsOf(model.Found);
+  for (std::size_t k = 0; k + 1 < found.size(); k += 2)
+  {
+    if (!given[found[k]].isUndefined() && given[found[k + 1]].isUndefined())
+    {
+      whole.set(found[k + 1], false);
+    }
+  }
+  Assigner assigner(whole);
   settings.Visit(assigner);
   const std::vector<std::string> keys =
     emscripten::vecFromJSArray<std::string>(val::global("Object").call<val>("keys", given));

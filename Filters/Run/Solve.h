@@ -77,6 +77,9 @@ struct NamedSettings
   const char* Data; ///< the name of its data in Python; empty: it takes none
   bool NeedsData;
   const char* Inputs; ///< the names of its other arrays in Python, separated by spaces
+  /// Settings that are found from the data unless they are given, in Python: pairs of a setting and the
+  /// switch that is off then, separated by spaces.
+  const char* Found = "";
 };
 
 template <typename ModelSettings>
@@ -92,9 +95,9 @@ std::unique_ptr<SurfaceRun> MakeSurfaceRun(const ParallelFor& parallel)
 }
 
 /// All models.
-inline const NamedSettings SettingsOfModels[] = {
-  { "curvature", &MakeDefaults<CurvatureSettings>, &MakeSurfaceRun<CurvatureRun>, "", false,
-    "mask roi" },
+inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<CurvatureSettings>,
+                                                    &MakeSurfaceRun<CurvatureRun>, "", false,
+                                                    "mask roi" },
   { "denoise_mesh", &MakeDefaults<DenoisingRunSettings>, &MakeSurfaceRun<DenoisingRun>, "", false,
     "fixed" },
   { "derivatives", &MakeDefaults<DerivativesSettings>, &MakeSurfaceRun<DerivativesRun>, "values",
@@ -108,21 +111,22 @@ inline const NamedSettings SettingsOfModels[] = {
   { "heat", &MakeDefaults<HeatSettings>, nullptr, "values", true,
     "mask roi directions fixed fidelity" },
   { "intrinsic_tv", &MakeDefaults<TotalVariationSettings>, nullptr, "values", true,
-    "mask roi directions fixed fidelity" },
+    "mask roi directions fixed fidelity",
+    "fidelity_weight automatic_blur_fidelity automatic_fidelity automatic_blur_fidelity" },
   { "mumford_shah", &MakeDefaults<MumfordShahSettings>, nullptr, "values", true,
-    "mask roi directions fixed fidelity" },
+    "mask roi directions fixed fidelity",
+    "edge_threshold automatic_threshold smoothing_length automatic_threshold" },
   { "interpolate", &MakeDefaults<InterpolationSettings>, nullptr, "values", true,
-    "mask roi directions fidelity" },
+    "mask roi directions fidelity", "smoothing automatic_smoothing" },
   { "random_field", &MakeDefaults<RandomFieldSettings>, &MakeSurfaceRun<RandomFieldRun>, "", false,
     "mask roi" },
   { "relief", &MakeDefaults<ReliefSettings>, &MakeSurfaceRun<ReliefRun>, "values", true, "mask" },
   { "segment", &MakeDefaults<SegmentationSettings>, nullptr, "values", true,
-    "seeds mask roi fidelity" },
+    "seeds mask roi fidelity", "means automatic_means fidelity_weight automatic_fidelity" },
   { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings>, nullptr, "values", true,
     "mask roi directions fixed fidelity" },
   { "turing_texture", &MakeDefaults<TextureSettings>, nullptr, "initial", false,
-    "mask roi directions fixed rates" }
-};
+    "mask roi directions fixed rates" } };
 
 /// The model of this name; null if there is none.
 const NamedSettings* FindModel(const std::string& function);

@@ -72,6 +72,8 @@ CASES = [
     ("relief", "level", {"height": 0.3}, 1e-9),
     ("segment", "noisy", {}, 1e-5),
     ("segment", "noisy", {"seeds": "labels", "mask": "mask"}, 1e-5),
+    ("segment", "noisy", {"means": [-1.0, 1.0]}, 1e-5),
+    ("intrinsic_tv", "noisy", {"mode": "steady_state", "fidelity_weight": 3.0}, 1e-5),
     ("tensor_diffusion", "noisy", {"number_of_time_steps": 4}, 1e-6),
     ("turing_texture", None, {"number_of_time_steps": 40}, 1e-6),
     ("turing_texture", None, {"number_of_time_steps": 10, "feature_size": 5.0}, 1e-6),

@@ -34,6 +34,10 @@ Bytes Inflate(const std::uint8_t* data, std::size_t size, std::uint64_t expected
     throw FileError(std::to_string(size) + " compressed bytes are announced to become " +
       std::to_string(expected));
   }
+  if (expected == 0)
+  {
+    return {};
+  }
   Bytes bytes(static_cast<std::size_t>(expected));
   Bytes
     padded; // the decoder looks ahead, to the checksum that only streams of zlib have at their end
