@@ -50,13 +50,18 @@ std::string Engine::Open(const std::string& name, const Files::Bytes& content)
   }
   else
   {
-    this->Given = Domain::Of(file);
-    this->File = std::move(file);
-    this->Fine = Domain();
-    this->Samples = Files::SurfaceFile();
-    this->TakeResults({}, {});
+    this->TakeSurface(std::move(file));
   }
   return this->Describe();
+}
+
+void Engine::TakeSurface(Files::SurfaceFile file)
+{
+  this->Given = Domain::Of(file);
+  this->File = std::move(file);
+  this->Fine = Domain();
+  this->Samples = Files::SurfaceFile();
+  this->TakeResults({}, {});
 }
 
 void Engine::AddValues(Files::SurfaceFile file)
@@ -216,6 +221,7 @@ std::string Engine::Run(
     others.emplace_back("terms");
   }
   AssignSettings(*model, *settings, given, others);
+  const bool isTexture = dynamic_cast<const TextureSettings*>(settings.get()) != nullptr;
   double reached = 0.0;
   const ProgressMonitor::Callback report = [&](double fraction)
   {
@@ -240,6 +246,7 @@ std::string Engine::Run(
   }
   solution.Warnings.insert(solution.Warnings.begin(), warnings.begin(), warnings.end());
   this->TakeResults(solution, dataName);
+  this->Pattern = isTexture ? "Texture" : "";
 
   std::vector<std::pair<std::string, std::vector<double>>> history;
   const History& steps = solution.Steps;
@@ -296,6 +303,7 @@ void Engine::TakeResults(const Solution& solution, const std::string& dataName)
   this->Results.clear();
   this->MovedPoints.clear();
   this->Turned = solution.Turned;
+  this->Pattern.clear();
   for (const auto& [name, values] : solution.Arrays)
   {
     const ArrayTraits& traits = solution.Traits.at(name);
@@ -323,7 +331,7 @@ const double* Engine::ResultPoints() const
                                    : this->MovedPoints.data();
 }
 
-Files::Bytes Engine::Write(const std::string& name) const
+Files::SurfaceFile Engine::WithResults() const
 {
   if (this->Given.Cells.empty())
   {
@@ -365,6 +373,35 @@ Files::Bytes Engine::Write(const std::string& name) const
                    { return old.Name == result.Name && old.OnCells == result.OnCells; }),
       arrays.end());
     arrays.push_back(result);
+  }
+  return file;
+}
+
+std::string Engine::Keep()
+{
+  this->TakeSurface(this->WithResults());
+  return this->Describe();
+}
+
+Files::Bytes Engine::Write(const std::string& name) const
+{
+  Files::SurfaceFile file = this->WithResults();
+  for (const Files::FileArray& result : this->Results)
+  {
+    if (result.Name != this->Pattern)
+    {
+      continue;
+    }
+    // The pattern in grey, which PLY and OBJ have as colours of the points
+    const auto [low, high] = std::minmax_element(result.Numbers.begin(), result.Numbers.end());
+    const double range = *high > *low ? *high - *low : 1.0;
+    Files::FileArray colors{ "RGB", result.OnCells, 3 };
+    colors.AreBytes = true;
+    for (const double number : result.Numbers)
+    {
+      colors.Numbers.insert(colors.Numbers.end(), 3, std::round(255.0 * (number - *low) / range));
+    }
+    file.Arrays.push_back(std::move(colors));
   }
   return Files::WriteFile(name, file);
 }

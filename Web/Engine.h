@@ -41,7 +41,9 @@ public:
   /// what there is as JSON.
   std::string Run(const std::string& model, const emscripten::val& given,
     const ProgressMonitor::Callback& progress);
-  /// The surface with the results, in the format that the name ends in.
+  /// Make the surface with the results of the last run that of the next ones. Returns as Open().
+  std::string Keep();
+  /// The surface with the results, in the format that the name ends in. A pattern is its colours, too.
   Files::Bytes Write(const std::string& name) const;
 
   const Domain& Surface() const { return this->Given; }
@@ -55,6 +57,8 @@ public:
 
 private:
   std::string Describe() const;
+  void TakeSurface(Files::SurfaceFile file);
+  Files::SurfaceFile WithResults() const;
   void AddValues(Files::SurfaceFile file);
   const Files::FileArray* Find(const std::string& name, const std::string& association) const;
   /// The surface that a run works on, by refine_to and maximum_number_of_triangles.
@@ -73,6 +77,7 @@ private:
   Domain Fine; ///< of the last run, if it refined the surface
   std::vector<Files::FileArray> Results;
   std::vector<double> MovedPoints;
+  std::string Pattern; ///< the name of the result that is one; empty: none
   std::vector<Index> Turned; ///< the triangles that a relief has turned
   Files::SurfaceFile Samples; ///< places with values, beside the surface
 };

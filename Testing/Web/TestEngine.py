@@ -4,6 +4,7 @@
 Python reads it. Argument: engine.js."""
 import gzip
 import io
+import json
 import sys
 import tempfile
 import unittest
@@ -405,6 +406,20 @@ class Files(EngineTest):
         moved = self.engine.call("resultPoints").reshape(-1, 3)
         self.engine.open("a.ply", self.engine.write("a.ply"))
         np.testing.assert_array_equal(self.engine.points(), moved)
+
+
+    def test_a_pattern_is_written_as_colours_and_kept_for_a_relief(self):
+        self.open_mesh()
+        self.engine.run("turing_texture", number_of_time_steps=40, refine_to=2.0)
+        pattern = self.engine.call("resultArray", "Texture")
+        data = self.engine.write("a.ply")
+        kept = json.loads(self.engine.call("keep"))
+        self.assertEqual(kept["points"], len(pattern))
+        np.testing.assert_array_equal(self.engine.array("Texture", "point")[:, 0], pattern)
+        self.assertEqual(self.engine.run("relief", array="Texture", height=0.1)["points"], True)
+        self.engine.open("a.ply", data)
+        grey = np.round(255 * (pattern - pattern.min()) / np.ptp(pattern))
+        np.testing.assert_allclose(self.engine.array("RGB", "point", 3)[:, 0], grey, atol=1)
 
 
 class WrongFiles(EngineTest):
