@@ -111,9 +111,9 @@ TEST_P(Format, IsReadOrEndsInASentenceWhereItIsDamaged)
 INSTANTIATE_TEST_SUITE_P(Files, Format,
   testing::Values(
     "a.stl", "a.ply", "a.obj", "a.off", "a.vtp", "a.vtu", "a.vtk", "a.gii", "a.3mf", "lh.a"),
-  [](const testing::TestParamInfo<const char*>& info)
+  [](const testing::TestParamInfo<const char*>& tested)
   {
-    std::string name = info.param;
+    std::string name = tested.param;
     std::replace(name.begin(), name.end(), '.', '_');
     return name;
   });

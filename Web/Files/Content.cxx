@@ -192,6 +192,11 @@ std::size_t CheckCount(
   return static_cast<std::size_t>(declared);
 }
 
+void Writer::Text(std::string_view text)
+{
+  this->Written.insert(this->Written.end(), text.begin(), text.end());
+}
+
 void Writer::Number(double number)
 {
   char text[40];

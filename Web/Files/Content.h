@@ -118,10 +118,7 @@ std::size_t CheckCount(
 class Writer
 {
 public:
-  void Text(std::string_view text)
-  {
-    this->Written.insert(this->Written.end(), text.begin(), text.end());
-  }
+  void Text(std::string_view text);
   /// A number with as many digits as it needs, as words in a line.
   void Number(double number);
   template <typename T>
