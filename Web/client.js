@@ -74,7 +74,8 @@ class EngineClient {
 
   async open(name, bytes) {
     const opened = await this.call("open", name, bytes);
-    const same = this.surface && this.surface.length === opened.coordinates.length
+    const same = this.surface && name !== this.files[0].name
+      && this.surface.length === opened.coordinates.length
       && this.surface.every((x, i) => x === opened.coordinates[i] || Number.isNaN(x));
     this.files = same ? this.files.filter((file) => file.name !== name) : [];
     this.files.push({ name, bytes });
