@@ -242,12 +242,12 @@ class Page {
     }
     const side = this.view.sides[place.side], at = [0, 1, 2].map((axis) => shortNumber(side.points[3 * place.point + axis]));
     const words = [`Point ${place.point} at (${at.join(", ")})`];
-    this.shownArrays().forEach(({ array, title }) => {
-      if (array) { words.push(`${title}: ${this.valueAt(array, place)}`); }
+    this.shownArrays().forEach(({ array, title, on }) => { // a refined surface has other triangles
+      if (array && on.triangles === side.triangles) { words.push(`${title}: ${this.valueAt(array, place, on)}`); }
     });
     $("readout").textContent = words.join(" · ");
     const kind = PICKS[this.model.name];
-    if (kind && !$("array").disabled) {
+    if (kind && side.triangles === this.mesh.triangles) {
       const value = Number($("pick-value").value.replace("−", "-").replace(",", "."));
       if (kind.valued && !Number.isFinite(value)) {
         this.say(`The value of the next click is “${$("pick-value").value}”; allowed: a number.`, "error");
@@ -258,17 +258,17 @@ class Page {
     }
   }
 
-  valueAt(array, { triangle, point, shares }) {
+  valueAt(array, { triangle, point, shares }, { triangles, cells }) {
     const { components, values } = array;
     const numbers = [];
     for (let c = 0; c < components; ++c) {
       if (array.association === "cell") {
-        numbers.push(values[components * this.mesh.cells[triangle] + c]);
+        numbers.push(values[components * cells[triangle] + c]);
       } else if (isLabels(values, array.name)) {
         numbers.push(values[components * point + c]);
       } else {
         numbers.push(shares.reduce((sum, share, k) =>
-          sum + share * values[components * this.mesh.triangles[3 * triangle + k] + c], 0));
+          sum + share * values[components * triangles[3 * triangle + k] + c], 0));
       }
     }
     const unit = this.unitOf(array.name);
@@ -363,12 +363,14 @@ class Page {
       this.enable();
     }
     if (mesh !== this.mesh) { throw new Cancelled("Another file has been opened."); }
-    this.result = { ...found, model, options, input: options.array || "", points: found.coordinates };
+    const moved = found.coordinates && mesh.points.some((x, i) => x !== found.coordinates[i]);
+    this.result = { ...found, model, options, input: options.array || "", points: found.coordinates,
+      triangles: found.resultTriangles || mesh.triangles, cells: found.resultCellOfTriangle || mesh.cells };
     this.saveLater();
     const names = found.arrays.map(({ name }) => name);
     $("shown").replaceChildren(...found.arrays.map(({ name }) => makeElement("option", { value: name, textContent: name })),
       makeElement("option", { value: "", textContent: "the surface alone" }));
-    $("shown").value = shown !== null ? shown : found.coordinates ? "" : mainResult(names, this.result.input);
+    $("shown").value = shown !== null ? shown : moved ? "" : mainResult(names, this.result.input);
     if (shown === null) { this.offerTimes(); }
     const seconds = ((performance.now() - start) / 1000).toFixed(2);
     this.say([...notes, `Done in ${seconds} s.`].join("\n"), "", found.warnings);
@@ -452,8 +454,8 @@ class Page {
   }
 
   async showResult() {
-    const { result, mesh } = this, array = arrayNamed(result.arrays, $("shown").value);
-    if (array && !array.shown) { array.shown = prepareValues(array, mesh.cells); }
+    const { result } = this, array = arrayNamed(result.arrays, $("shown").value);
+    if (array && !array.shown) { array.shown = prepareValues(array, result.cells); }
     this.showSides();
   }
 
@@ -490,19 +492,20 @@ class Page {
 
   /** What is on the left and on the right. */
   shownArrays() {
-    const { result } = this;
-    if (!result) { return [{ array: this.before, title: this.before ? this.before.name : "" }]; }
+    const { result, mesh } = this;
+    if (!result) { return [{ array: this.before, title: this.before ? this.before.name : "", on: mesh }]; }
     const alone = $("shown").value === "";
     const after = alone ? null : arrayNamed(result.arrays, $("shown").value);
-    return [{ array: alone ? null : this.before, title: this.before && !alone ? this.before.name : "Before" },
-      { array: after, title: after ? after.name : "After" }];
+    return [{ array: alone ? null : this.before, on: mesh,
+      title: this.before && !alone ? this.before.name : "Before" },
+    { array: after, on: result, title: after ? after.name : "After" }];
   }
 
   showSides(frame = false) {
     if (!this.mesh) { return; }
     const { mesh, result } = this, arrays = this.shownArrays();
     this.setRanges(arrays.map(({ array }) => array && array.shown));
-    const sides = arrays.map(({ array }, i) => ({ triangles: mesh.triangles, values: array && array.shown,
+    const sides = arrays.map(({ array, on }, i) => ({ triangles: on.triangles, values: array && array.shown,
       points: i === 1 && result.points ? result.points : mesh.points }));
     this.view.show(sides, frame);
     this.placePanes();

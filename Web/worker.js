@@ -45,7 +45,7 @@ function surfaceDiffusionWorker(makeEngine) {
       result.arrays.forEach((array) => { array.values = own(engine.resultArray(array.name), engine); });
       result.coordinates = result.points ? own(engine.resultPoints(), engine) : null;
       for (const name of ["resultTriangles", "resultCellOfTriangle"]) { // of surfaces that a run refines
-        result[name] = result.refined && engine[name] ? own(engine[name](), engine) : null;
+        result[name] = result.refined ? own(engine[name](), engine) : null;
       }
       return result;
     },
