@@ -13,7 +13,7 @@ const STARTS = {
   relief: ({ size }) => ({ height: rounded(0.01 * size) }),
   harmonic_map: () => ({ move_vertices: true }),
 };
-const HEIGHT = "Height (z)"; // the data of a mesh that has none
+const HEIGHT = "Height"; // the data of a mesh that has none
 const LARGEST_FILE = 1e9; // bytes; its surface would not fit into the memory of the engine
 
 /** What clicks add, by model: the keyword, the words, and whether each point has a value. */
