@@ -77,7 +77,7 @@ function isLabels(numbers, name) {
 function kindOfComponents(array) {
   const { values, components } = array;
   if (components !== 3 && components !== 4) { return "length"; }
-  let integers = true, units = components === 3, largest = 0;
+  let integers = true, units = components === 3, largest = 0, longest = 0;
   const step = components * Math.max(1, Math.trunc(values.length / components / 2000));
   for (let i = 0; i + components <= values.length; i += step) {
     let square = 0;
@@ -87,10 +87,11 @@ function kindOfComponents(array) {
       largest = Math.max(largest, x);
       square += x * x;
     }
+    longest = Math.max(longest, square);
     units = units && (Number.isNaN(square) || square === 0 || Math.abs(square - 1) < 0.01);
   }
   if (integers && largest > 1) { return "colours"; }
-  if (units) { return "directions"; }
+  if (units && longest > 0) { return "directions"; }
   return /colou?r|rgb/i.test(array.name) && largest <= 1 ? "shares" : "length";
 }
 

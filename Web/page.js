@@ -13,7 +13,6 @@ const STARTS = {
   relief: ({ size }) => ({ height: rounded(0.01 * size) }),
   harmonic_map: () => ({ move_vertices: true }),
 };
-const HEIGHT = "Height"; // the data of a mesh that has none
 const LARGEST_FILE = 1e9; // bytes; its surface would not fit into the memory of the engine
 
 /** What clicks add, by model: the keyword, the words, and whether each point has a value. */
@@ -163,7 +162,7 @@ class Page {
       this.result = null;
       this.file = null;
       this.picks = [];
-      Object.assign(this.mesh, measure(this.mesh));
+      Object.assign(this.mesh, measure(this.mesh)); // h, extent, size, own
       $("units").value = opened.unit || "";
       $("units-row").hidden = false;
       document.body.classList.add("loaded");
@@ -189,7 +188,7 @@ class Page {
         + (association === "cell" ? ", on cells" : "") }));
     const none = { vectors: "normals of the surface", sources: "clicked points", initial: "random noise" }[data];
     if (none) { options.unshift(makeElement("option", { value: "", textContent: none })); }
-    if (!arrays.length && !none) { options.push(makeElement("option", { value: HEIGHT, textContent: HEIGHT })); }
+    if (!arrays.length && !none) { options.push(makeElement("option", { value: this.mesh.own.name, textContent: this.mesh.own.name })); }
     $("array").replaceChildren(...options);
     if (!none && options.some(({ value }) => value === this.chosen)) { $("array").value = this.chosen; }
     $("array-row").firstElementChild.textContent = data ? "Data" : "Shown";
@@ -336,13 +335,14 @@ class Page {
   /** The engine gets the height of the points as data, as a file of values, when it is first used. */
   async ensureHeight() {
     const { mesh } = this;
-    if (!this.model.data || $("array").value !== HEIGHT || arrayNamed(mesh.arrays, HEIGHT)) { return; }
-    const lines = [HEIGHT];
-    for (let i = 2; i < mesh.points.length; i += 3) { lines.push(mesh.points[i]); }
-    const { arrays } = await this.client.open("height.csv", new TextEncoder().encode(lines.join("\n") + "\n"));
+    const { name, axis } = mesh.own;
+    if (!this.model.data || $("array").value !== name || arrayNamed(mesh.arrays, name)) { return; }
+    const lines = [name];
+    for (let i = axis; i < mesh.points.length; i += 3) { lines.push(mesh.points[i]); }
+    const { arrays } = await this.client.open(`${name}.csv`, new TextEncoder().encode(lines.join("\n") + "\n"));
     mesh.arrays = arrays.map((array) => ({ ...array }));
-    this.offerArrays(HEIGHT);
-    await this.valuesOf(arrayNamed(mesh.arrays, HEIGHT));
+    this.offerArrays(name);
+    await this.valuesOf(arrayNamed(mesh.arrays, name));
   }
 
   /** Runs a model, as by Apply. Returns arrays by name, moved points, history, numbers and warnings. */
@@ -445,9 +445,9 @@ class Page {
       array.shown = array.shown || prepareValues(array, mesh.cells);
     }
     this.before = array || null;
-    if (!this.before && $("array").value === HEIGHT) {
-      this.before = { name: HEIGHT, association: "point", components: 1,
-        values: mesh.points.filter((_, i) => i % 3 === 2) };
+    if (!this.before && $("array").value === mesh.own.name) {
+      this.before = { name: mesh.own.name, association: "point", components: 1,
+        values: mesh.points.filter((_, i) => i % 3 === mesh.own.axis) };
       this.before.shown = prepareValues(this.before, mesh.cells);
     }
     this.showSides(frame);
@@ -610,7 +610,10 @@ function measure({ points, triangles }) {
     sum += Math.hypot(points[a] - points[b], points[a + 1] - points[b + 1], points[a + 2] - points[b + 2]);
   }
   const extent = high.map((x, axis) => x - low[axis]);
-  return { h: sum / triangles.length || 1, extent, size: Math.max(...extent) };
+  const size = Math.max(...extent), axis = extent[2] > 1e-3 * size ? 2 : extent.indexOf(size);
+  // The data of a mesh that has none: a coordinate
+  const own = { name: axis === 2 ? "Height" : `Coordinate_${"xy"[axis]}`, axis };
+  return { h: sum / triangles.length || 1, extent, size, own };
 }
 
 function highest(points) {

@@ -333,8 +333,8 @@ class SurfaceView {
       }
       return largest;
     });
-    const flat = extent.findIndex((x) => x < 0.04);
-    const from = flat < 0 ? [0.55, -1, 0.55] : [0, 1, 2].map((axis) =>
+    const flat = extent.indexOf(Math.min(...extent));
+    const from = extent[flat] > 0.04 ? [0.55, -1, 0.55] : [0, 1, 2].map((axis) =>
       axis === flat ? (axis === 1 ? -1 : 1) : axis === 1 ? -0.35 : 0.25);
     this.lookFrom(from);
   }
@@ -350,8 +350,9 @@ class SurfaceView {
 
   /** Moves the camera so that the framed points fill the view, with a margin. */
   fit() {
-    const { width, height } = this.viewport(0);
+    const { width, height } = this.viewport(0), bars = 60 * (window.devicePixelRatio || 1);
     const aspect = width / Math.max(height, 1), points = this.framed, extent = [[9, -9], [9, -9]];
+    const free = Math.max(0.5, 1 - bars / Math.max(height, 1)); // below the colour bars
     const step = 3 * Math.max(1, Math.trunc(points.length / 300000));
     const each = (use) => {
       for (let i = 0; i < points.length; i += step) {
@@ -368,8 +369,9 @@ class SurfaceView {
     this.distance = 0.05;
     each((q) => {
       this.distance = Math.max(this.distance, q[2] + 1.12 * Math.max(
-        Math.abs(q[1] - this.aim[1]) / tangent, Math.abs(q[0] - this.aim[0]) / (tangent * aspect)));
+        Math.abs(q[1] - this.aim[1]) / (tangent * free), Math.abs(q[0] - this.aim[0]) / (tangent * aspect)));
     });
+    this.aim[1] += (1 - free) * tangent * this.distance;
     this.fitted = this.distance;
   }
 
