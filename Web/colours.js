@@ -59,6 +59,10 @@ function rangeOf(numbers) {
     if (width > 0 && high - last < 0.5 * width) { last = high; }
     if (!(width > 0)) { [first, last] = [low, high]; }
   }
+  if (first === last) { // a constant has the colour of the middle
+    const part = 0.1 * Math.abs(first) || 1;
+    [first, last] = [first - part, last + part];
+  }
   return { low, high, first, last };
 }
 
@@ -134,7 +138,7 @@ function prepareValues(array, triangleCells) {
   if (labels) { [extent.first, extent.last] = [extent.low, extent.high]; }
   // Values of both signs about zero have a map with a middle.
   const signed = !labels && extent.first < 0 && extent.last > 0
-    && Math.min(-extent.first, extent.last) > 0.2 * Math.max(-extent.first, extent.last);
+    && Math.min(-extent.first, extent.last) > 0.4 * Math.max(-extent.first, extent.last);
   const shown = { association, kind, numbers, base, labels, signed, extent };
   setRange(shown, signed ? symmetric(extent.first, extent.last) : [extent.first, extent.last]);
   return shown;

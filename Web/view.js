@@ -269,6 +269,8 @@ class SurfaceView {
     const first = this.sides[0];
     if (frame || !this.turn) {
       this.setFrame(first.points);
+    } else if (old.length !== this.sides.length && this.distance === this.fitted) {
+      this.fit();
     }
     this.sides.forEach((side, i) => {
       const kept = old[i];
