@@ -549,7 +549,8 @@ class Page {
   placePanes() {
     if (!this.mesh) { return; }
     const ratio = window.devicePixelRatio || 1, height = $("frame").clientHeight;
-    this.view.draw();
+    this.view.resize();
+    this.view.redraw();
     [0, 1].forEach((i) => {
       const pane = $(`pane-${i}`);
       pane.hidden = i >= this.view.sides.length;

@@ -402,18 +402,24 @@ class SurfaceView {
     requestAnimationFrame(() => { this.pending = false; this.draw(); });
   }
 
-  draw() {
-    const gl = this.gl, ratio = window.devicePixelRatio || 1;
+  /** Gives the canvas as many pixels as its place on the page has. */
+  resize() {
+    const ratio = window.devicePixelRatio || 1;
     const width = Math.round(this.canvas.clientWidth * ratio), height = Math.round(this.canvas.clientHeight * ratio);
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
       this.canvas.height = height;
       if (this.turn && this.distance === this.fitted) { this.fit(); }
     }
+  }
+
+  draw() {
+    const gl = this.gl, ratio = window.devicePixelRatio || 1;
+    this.resize();
     gl.disable(gl.SCISSOR_TEST);
     gl.clearColor(...this.background, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    if (!this.turn || !width || !height) { return; }
+    if (!this.turn || !this.canvas.width || !this.canvas.height) { return; }
     gl.enable(gl.DEPTH_TEST);
     this.sides.forEach((side, i) => {
       const port = this.viewport(i);
