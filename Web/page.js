@@ -26,6 +26,7 @@ const PICKS = {
 
 const rounded = (x) => Number(x.toPrecision(3));
 const plural = (count, word) => `${count.toLocaleString("en")} ${word}${count === 1 ? "" : "s"}`;
+const lastPart = (name) => name.split("/").pop() || name; // of arrays that are named after a file
 const arrayNamed = (arrays, name) => arrays.find((array) => array.name === name);
 
 class Page {
@@ -149,7 +150,7 @@ class Page {
   }
 
   /** Opens a file, as by dropping it. Returns what it has. */
-  async open(name, bytes) {
+  async open(name, bytes, unit = "") {
     await this.ready;
     const start = performance.now();
     this.say(`Reading ${name} …`);
@@ -163,7 +164,7 @@ class Page {
       this.file = null;
       this.picks = [];
       Object.assign(this.mesh, measure(this.mesh)); // h, extent, size, own
-      $("units").value = opened.unit || "";
+      $("units").value = opened.unit || unit;
       $("units-row").hidden = false;
       document.body.classList.add("loaded");
       ["low", "high"].forEach((id) => { $(id).value = ""; });
@@ -171,9 +172,9 @@ class Page {
     const fresh = opened.isSame ? opened.arrays[opened.arrays.length - 1] : null;
     this.offerArrays(fresh ? fresh.name : null);
     await this.showBefore(!opened.isSame);
-    const { points, triangles, extent } = this.mesh, unit = $("units").value;
+    const { points, triangles, extent } = this.mesh, lengths = $("units").value;
     this.say(`${name}: ${plural(points.length / 3, "point")}, ${plural(triangles.length / 3, "triangle")}, `
-      + `${extent.map(shortNumber).join(" × ")}${unit && ` ${unit}`}.`, "", opened.warnings);
+      + `${extent.map(shortNumber).join(" × ")}${lengths && ` ${lengths}`}.`, "", opened.warnings);
     this.enable();
     this.openTime = performance.now() - start;
     return { points: opened.points, triangles: opened.triangles.length / 3, polygons: opened.polygons,
@@ -184,7 +185,7 @@ class Page {
     this.chosen = chosen || $("array").value || this.chosen; // also while a model takes none
     const { arrays } = this.mesh, { data } = this.model;
     const options = arrays.map(({ name, association, components }) => makeElement("option", { value: name,
-      textContent: name + (components > 1 ? `, ${components} components` : "")
+      textContent: lastPart(name) + (components > 1 ? `, ${components} components` : "")
         + (association === "cell" ? ", on cells" : "") }));
     const none = { vectors: "normals of the surface", sources: "clicked points", initial: "random noise" }[data];
     if (none) { options.unshift(makeElement("option", { value: "", textContent: none })); }
@@ -368,7 +369,7 @@ class Page {
       triangles: found.resultTriangles || mesh.triangles, cells: found.resultCellOfTriangle || mesh.cells };
     this.saveLater();
     const names = found.arrays.map(({ name }) => name);
-    $("shown").replaceChildren(...found.arrays.map(({ name }) => makeElement("option", { value: name, textContent: name })),
+    $("shown").replaceChildren(...found.arrays.map(({ name }) => makeElement("option", { value: name, textContent: lastPart(name) })),
       makeElement("option", { value: "", textContent: "the surface alone" }));
     $("shown").value = shown !== null ? shown : moved ? "" : mainResult(names, this.result.input);
     if (shown === null) { this.offerTimes(); }
@@ -413,8 +414,7 @@ class Page {
   async goOn() {
     const bytes = await this.client.call("write", "result.vtp");
     const { name } = this.mesh, shown = $("shown").value, unit = $("units").value;
-    await this.open(name.replace(/(\.[^.]*)?$/, ".vtp"), bytes.buffer);
-    $("units").value = unit;
+    await this.open(name.replace(/(\.[^.]*)?$/, ".vtp"), bytes.buffer, unit);
     if (arrayNamed(this.mesh.arrays, shown)) {
       this.offerArrays(shown);
       await this.showBefore();
@@ -493,12 +493,12 @@ class Page {
   /** What is on the left and on the right. */
   shownArrays() {
     const { result, mesh } = this;
-    if (!result) { return [{ array: this.before, title: this.before ? this.before.name : "", on: mesh }]; }
+    if (!result) { return [{ array: this.before, title: this.before ? lastPart(this.before.name) : "", on: mesh }]; }
     const alone = $("shown").value === "";
     const after = alone ? null : arrayNamed(result.arrays, $("shown").value);
     return [{ array: alone ? null : this.before, on: mesh,
-      title: this.before && !alone ? this.before.name : "Before" },
-    { array: after, on: result, title: after ? after.name : "After" }];
+      title: this.before && !alone ? lastPart(this.before.name) : "Before" },
+    { array: after, on: result, title: after ? lastPart(after.name) : "After" }];
   }
 
   showSides(frame = false) {
