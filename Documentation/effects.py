@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 import surfacediffusion as sd
-from meshes import as_polydata
 from scenes import save_scene
+from surface_data import make_surface, with_arrays
 
 VIRIDIS = np.array([(68, 1, 84), (58, 82, 139), (32, 144, 140), (94, 201, 97), (253, 231, 36)])
 
@@ -279,8 +279,8 @@ class Panel:
         triangles = surface.triangles
         if values is None:  # each triangle has points of its own, so that creases are seen
             points, triangles = points[triangles.ravel()], np.arange(triangles.size).reshape(-1, 3)
-        self.surface = as_polydata(points, triangles, {
-            "colours": colours_of(values, limits, len(points)).astype(np.uint8)})
+        self.surface = with_arrays(make_surface(points, triangles), **{
+            self.array: colours_of(values, limits, len(points)).astype(np.uint8)})
 
 
 def colours_of(values, limits, size):

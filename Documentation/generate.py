@@ -19,7 +19,7 @@ from pathlib import Path
 import surfacediffusion as sd
 
 SOURCE, SITE = (Path(argument).resolve() for argument in sys.argv[1:3])
-sys.path[:0] = [str(SOURCE / "Examples/Python"), str(SOURCE / "Examples/Web")]
+sys.path.insert(0, str(SOURCE / "Examples/Python"))
 import command_reference  # noqa: E402
 from effects import write_scenes  # noqa: E402
 

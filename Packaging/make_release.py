@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tarfile
 import tempfile
+import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -151,7 +152,21 @@ def make_site(folder, *_):
         archive.add(ROOT / "build/site/html", name)
 
 
-ARTEFACTS = {"sources": make_sources, "python": make_python, "plugin": make_plugin, "site": make_site}
+def make_page(folder, *_):
+    """The page without a server: files for any host, or to open from the disk."""
+    call("cmake", "--preset", "page")
+    call("cmake", "--build", "--preset", "page")
+    name = f"surfacediffusion-{version()}-page"
+    with zipfile.ZipFile(folder / f"{name}.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in sorted((ROOT / "build/page").iterdir()):
+            if path.suffix in (".html", ".js", ".css"):
+                archive.write(path, f"{name}/{path.name}")
+        archive.write(ROOT / "LICENSE", f"{name}/LICENSE")
+        archive.write(ROOT / "NOTICE", f"{name}/NOTICE")
+
+
+ARTEFACTS = {"sources": make_sources, "python": make_python, "plugin": make_plugin, "page": make_page,
+             "site": make_site}
 
 
 def main():

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
-#include <type_traits>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -193,7 +192,10 @@ public:
         default:
           const bool isMain = output.IsState && output.IsResult;
           const bool isFirst = solution.Arrays.empty();
-          const Values& written = solution.Arrays[output.Name] = this->Write(output, source);
+          const OutputRows rows(output, source);
+          const Values& written = solution.Arrays[output.Name] = this->Write(rows, source);
+          solution.Traits[output.Name] = { rows.OnCells(), output.IsResult || output.IsBesideResult,
+            output.Active == Role::Coordinates };
           if (isFirst || isMain)
           {
             solution.Result = written;
@@ -209,9 +211,8 @@ private:
                                     : static_cast<std::size_t>(this->Data.NumberOfCells);
   }
 
-  Values Write(const Output& output, const OutputSource& source) const
+  Values Write(const OutputRows& rows, const OutputSource& source) const
   {
-    const OutputRows rows(output, source);
     Values written(rows.Count(), rows.Columns());
     rows.Write(
       written.data(), written.cols(), -1,
@@ -235,9 +236,9 @@ std::vector<std::string> SentencesOf(const std::vector<Warning>& warnings)
 }
 
 /// A run without time steps, whose settings are checked together with the arrays.
-template <typename RunType>
-Solution SolveOnce(const Points& points, const Triangles& triangles, const SurfaceData& data,
-  Settings& settings, const ParallelFor& parallel)
+Solution SolveOnce(std::unique_ptr<SurfaceRun> run, const Points& points,
+  const Triangles& triangles, const SurfaceData& data, Settings& settings,
+  const ParallelFor& parallel, const ProgressMonitor& progress = ProgressMonitor())
 {
   return WordErrors(
     [&]
@@ -247,17 +248,28 @@ Solution SolveOnce(const Points& points, const Triangles& triangles, const Surfa
       Problems problems;
       settings.Check(&summary, problems);
       ThrowProblems(problems);
-      RunType run(parallel);
-      NamingSettings(settings,
-        [&] { run.Update(input.Block(run.ExcludesMasked()), settings, ProgressMonitor()); });
-      if constexpr (std::is_same_v<RunType, DistanceRun>)
+      NamingSettings(
+        settings, [&] { run->Update(input.Block(run->ExcludesMasked()), settings, progress); });
+      if (const auto* const distance = dynamic_cast<const DistanceRun*>(run.get()))
       {
-        DistanceRun::RequireSource({ &run });
+        DistanceRun::RequireSource({ distance });
       }
       Solution solution;
-      OutputSource source{ run.GetSurface(), parallel };
-      input.TakeOutputs(run.Outputs(), source, solution);
-      solution.Warnings = SentencesOf(run.FindWarnings());
+      OutputSource source{ run->GetSurface(), parallel };
+      input.TakeOutputs(run->Outputs(), source, solution);
+      solution.Warnings = SentencesOf(run->FindWarnings());
+      if (const auto* const relief = dynamic_cast<const ReliefRun*>(run.get()))
+      {
+        solution.Traits["ReliefHeight"].IsOfData = false; // ResultArrayName has a default in VTK
+        const std::vector<char>& turned = relief->TurnedTriangles();
+        for (std::size_t t = 0; t < turned.size(); ++t)
+        {
+          if (turned[t])
+          {
+            solution.Turned.push_back(relief->GetSurface().InputTriangle(static_cast<Index>(t)));
+          }
+        }
+      }
       return solution;
     });
 }
@@ -298,6 +310,32 @@ Solution SolveSteps(const Input& input, const std::shared_ptr<RunSettings>& sett
 
 } // namespace
 
+const NamedSettings* FindModel(const std::string& function)
+{
+  for (const NamedSettings& model : SettingsOfModels)
+  {
+    if (function == model.Function)
+    {
+      return &model;
+    }
+  }
+  return nullptr;
+}
+
+Solution SolveModel(const NamedSettings& model, const Points& points, const Triangles& triangles,
+  const SurfaceData& data, std::unique_ptr<Settings> settings, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
+{
+  if (model.MakeRun)
+  {
+    return SolveOnce(
+      model.MakeRun(parallel), points, triangles, data, *settings, parallel, progress);
+  }
+  // The settings of a model without a run are RunSettings.
+  std::shared_ptr<RunSettings> ofRun(static_cast<RunSettings*>(settings.release()));
+  return SolveModel(points, triangles, data, std::move(ofRun), parallel, progress);
+}
+
 Solution SolveModel(const Points& points, const Triangles& triangles, const SurfaceData& data,
   std::shared_ptr<RunSettings> settings, const ParallelFor& parallel,
   const ProgressMonitor& progress)
@@ -309,31 +347,36 @@ Solution SolveModel(const Points& points, const Triangles& triangles, const Surf
 Solution DirectionField(const Points& points, const Triangles& triangles,
   DirectionFieldSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  return SolveOnce<DirectionFieldRun>(points, triangles, data, settings, parallel);
+  return SolveOnce(
+    std::make_unique<DirectionFieldRun>(parallel), points, triangles, data, settings, parallel);
 }
 
 Solution Curvature(const Points& points, const Triangles& triangles, CurvatureSettings settings,
   const SurfaceData& data, const ParallelFor& parallel)
 {
-  return SolveOnce<CurvatureRun>(points, triangles, data, settings, parallel);
+  return SolveOnce(
+    std::make_unique<CurvatureRun>(parallel), points, triangles, data, settings, parallel);
 }
 
 Solution RandomFields(const Points& points, const Triangles& triangles,
   RandomFieldSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  return SolveOnce<RandomFieldRun>(points, triangles, data, settings, parallel);
+  return SolveOnce(
+    std::make_unique<RandomFieldRun>(parallel), points, triangles, data, settings, parallel);
 }
 
 Solution Derivative(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DerivativesSettings settings, const ParallelFor& parallel)
 {
-  return SolveOnce<DerivativesRun>(points, triangles, data, settings, parallel);
+  return SolveOnce(
+    std::make_unique<DerivativesRun>(parallel), points, triangles, data, settings, parallel);
 }
 
 Solution Distance(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DistanceSettings settings, const ParallelFor& parallel)
 {
-  return SolveOnce<DistanceRun>(points, triangles, data, settings, parallel);
+  return SolveOnce(
+    std::make_unique<DistanceRun>(parallel), points, triangles, data, settings, parallel);
 }
 
 SmoothnessEstimate EstimateFWHM(
@@ -405,7 +448,8 @@ Values SmoothToFWHM(const Points& points, const Triangles& triangles, const Valu
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,
   DenoisingRunSettings settings, const SurfaceData& data, const ParallelFor& parallel)
 {
-  Solution solution = SolveOnce<DenoisingRun>(points, triangles, data, settings, parallel);
+  Solution solution = SolveOnce(
+    std::make_unique<DenoisingRun>(parallel), points, triangles, data, settings, parallel);
   if (solution.Arrays.count("Points") == 0) // nothing has moved
   {
     solution.Result = solution.Arrays["Points"] = points;

@@ -41,6 +41,14 @@
 namespace SurfaceDiffusion
 {
 
+/// What an array of a Solution is, besides its numbers.
+struct ArrayTraits
+{
+  bool OnCells = false;
+  bool IsOfData = false; ///< its name in VTK is that of the data, followed by its name here
+  bool ArePoints = false; ///< the points of the surface, which have moved
+};
+
 /// The results of a model on one surface, under the names of the arrays and properties in VTK.
 struct Solution
 {
@@ -50,18 +58,28 @@ struct Solution
   /// All results at points or cells, the main one included. A result that is named after the data
   /// in VTK has its suffix as name, for instance "Diffused".
   std::map<std::string, Values> Arrays;
+  std::map<std::string, ArrayTraits> Traits; ///< of Arrays
   std::map<std::string, std::shared_ptr<const SurfaceDiffusion::Curves>> Curves;
   std::map<std::string, Values> Numbers; ///< 1 x 1, or a matrix
   std::map<std::string, Values> Columns; ///< of tables, a row per region, and attributes of curves
+  std::vector<Index> Turned; ///< the triangles whose orientation a relief has changed
   History Steps; ///< of models with time steps
   std::vector<std::string> Warnings;
 };
 
-/// Makes the settings of a model, with their defaults.
+/// One of the models by its name: how its settings and its run are made, and what it takes.
 struct NamedSettings
 {
   const char* Function; ///< its name in Python
   std::unique_ptr<Settings> (*Make)();
+  /// Of a computation without time steps; null: the settings are RunSettings.
+  std::unique_ptr<SurfaceRun> (*MakeRun)(const ParallelFor& parallel);
+  const char* Data; ///< the name of its data in Python; empty: it takes none
+  bool NeedsData;
+  const char* Inputs; ///< the names of its other arrays in Python, separated by spaces
+  /// Settings that are found from the data unless they are given, in Python: pairs of a setting and the
+  /// switch that is off then, separated by spaces.
+  const char* Found = "";
 };
 
 template <typename ModelSettings>
@@ -70,20 +88,48 @@ std::unique_ptr<Settings> MakeDefaults()
   return std::make_unique<ModelSettings>();
 }
 
+template <typename RunType>
+std::unique_ptr<SurfaceRun> MakeSurfaceRun(const ParallelFor& parallel)
+{
+  return std::make_unique<RunType>(parallel);
+}
+
 /// All models.
-inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<CurvatureSettings> },
-  { "denoise_mesh", &MakeDefaults<DenoisingRunSettings> },
-  { "derivatives", &MakeDefaults<DerivativesSettings> },
-  { "direction_field", &MakeDefaults<DirectionFieldSettings> },
-  { "distance", &MakeDefaults<DistanceSettings> },
-  { "harmonic_map", &MakeDefaults<HarmonicMapSettings> }, { "heat", &MakeDefaults<HeatSettings> },
-  { "intrinsic_tv", &MakeDefaults<TotalVariationSettings> },
-  { "mumford_shah", &MakeDefaults<MumfordShahSettings> },
-  { "interpolate", &MakeDefaults<InterpolationSettings> },
-  { "random_field", &MakeDefaults<RandomFieldSettings> },
-  { "relief", &MakeDefaults<ReliefSettings> }, { "segment", &MakeDefaults<SegmentationSettings> },
-  { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings> },
-  { "turing_texture", &MakeDefaults<TextureSettings> } };
+inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<CurvatureSettings>,
+                                                    &MakeSurfaceRun<CurvatureRun>, "", false,
+                                                    "mask roi" },
+  { "denoise_mesh", &MakeDefaults<DenoisingRunSettings>, &MakeSurfaceRun<DenoisingRun>, "", false,
+    "fixed" },
+  { "derivatives", &MakeDefaults<DerivativesSettings>, &MakeSurfaceRun<DerivativesRun>, "values",
+    true, "mask roi" },
+  { "direction_field", &MakeDefaults<DirectionFieldSettings>, &MakeSurfaceRun<DirectionFieldRun>,
+    "", false, "hints" },
+  { "distance", &MakeDefaults<DistanceSettings>, &MakeSurfaceRun<DistanceRun>, "sources", true,
+    "start speed directions mask roi" },
+  { "harmonic_map", &MakeDefaults<HarmonicMapSettings>, nullptr, "vectors", false,
+    "mask roi directions fixed fidelity" },
+  { "heat", &MakeDefaults<HeatSettings>, nullptr, "values", true,
+    "mask roi directions fixed fidelity" },
+  { "intrinsic_tv", &MakeDefaults<TotalVariationSettings>, nullptr, "values", true,
+    "mask roi directions fixed fidelity",
+    "fidelity_weight automatic_blur_fidelity automatic_fidelity automatic_blur_fidelity" },
+  { "mumford_shah", &MakeDefaults<MumfordShahSettings>, nullptr, "values", true,
+    "mask roi directions fixed fidelity",
+    "edge_threshold automatic_threshold smoothing_length automatic_threshold" },
+  { "interpolate", &MakeDefaults<InterpolationSettings>, nullptr, "values", true,
+    "mask roi directions fidelity", "smoothing automatic_smoothing" },
+  { "random_field", &MakeDefaults<RandomFieldSettings>, &MakeSurfaceRun<RandomFieldRun>, "", false,
+    "mask roi" },
+  { "relief", &MakeDefaults<ReliefSettings>, &MakeSurfaceRun<ReliefRun>, "values", true, "mask" },
+  { "segment", &MakeDefaults<SegmentationSettings>, nullptr, "values", true,
+    "seeds mask roi fidelity", "means automatic_means fidelity_weight automatic_fidelity" },
+  { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings>, nullptr, "values", true,
+    "mask roi directions fixed fidelity" },
+  { "turing_texture", &MakeDefaults<TextureSettings>, nullptr, "initial", false,
+    "mask roi directions fixed rates" } };
+
+/// The model of this name; null if there is none.
+const NamedSettings* FindModel(const std::string& function);
 
 /// The data of a call: Fields, or values at the points alone.
 struct SurfaceData : Fields
@@ -99,6 +145,11 @@ struct SurfaceData : Fields
     this->Data.Values = ofPoints.derived();
   }
 };
+
+/// Any of the models, with settings that its Make() has made.
+Solution SolveModel(const NamedSettings& model, const Points& points, const Triangles& triangles,
+  const SurfaceData& data, std::unique_ptr<Settings> settings,
+  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
 
 Solution SolveModel(const Points& points, const Triangles& triangles, const SurfaceData& data,
   std::shared_ptr<RunSettings> settings, const ParallelFor& parallel = SerialFor(),

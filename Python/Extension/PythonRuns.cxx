@@ -6,14 +6,8 @@
 #include "OutputTable.h"
 #include "PythonProgress.h"
 #include "Run/BlockSentences.h"
-#include "Run/CurvatureRun.h"
-#include "Run/DenoisingRun.h"
-#include "Run/DerivativesRun.h"
-#include "Run/DirectionFieldRun.h"
-#include "Run/DistanceRun.h"
 #include "Run/ErrorCauses.h"
-#include "Run/RandomFieldRun.h"
-#include "Run/ReliefRun.h"
+#include "Run/Solve.h"
 #include "SettingsTable.h"
 #include "Threads.h"
 
@@ -29,32 +23,14 @@ namespace SurfaceDiffusion
 namespace
 {
 
-template <typename RunType>
-std::unique_ptr<SurfaceRun> Make()
-{
-  return std::make_unique<RunType>(PythonThreads::Instance());
-}
-
-const std::pair<const char*, std::unique_ptr<SurfaceRun> (*)()> RunsOfFunctions[] = {
-  { "curvature", &Make<CurvatureRun> },
-  { "denoise_mesh", &Make<DenoisingRun> },
-  { "derivatives", &Make<DerivativesRun> },
-  { "direction_field", &Make<DirectionFieldRun> },
-  { "distance", &Make<DistanceRun> },
-  { "random_field", &Make<RandomFieldRun> },
-  { "relief", &Make<ReliefRun> },
-};
-
 std::unique_ptr<SurfaceRun> MakeRun(const std::string& name)
 {
-  for (const auto& [function, make] : RunsOfFunctions)
+  const NamedSettings* const model = FindModel(name);
+  if (!model || !model->MakeRun)
   {
-    if (name == function)
-    {
-      return make();
-    }
+    throw nb::key_error(name.c_str());
   }
-  throw nb::key_error(name.c_str());
+  return model->MakeRun(PythonThreads::Instance());
 }
 
 } // namespace

@@ -156,14 +156,12 @@ nb::list ListWords(const Sentence& sentence)
 
 std::unique_ptr<Settings> MakeSettings(const std::string& model)
 {
-  for (const NamedSettings& entry : SettingsOfModels)
+  const NamedSettings* const found = FindModel(model);
+  if (!found)
   {
-    if (model == entry.Function)
-    {
-      return entry.Make();
-    }
+    throw nb::key_error(model.c_str());
   }
-  throw nb::key_error(model.c_str());
+  return found->Make();
 }
 
 std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model)

@@ -24,13 +24,14 @@ for program in ("chromium", "chromedriver"):
 PATIENCE = 180  # seconds; two cores may be busy with other tests
 
 
-def open_browser(downloads=None):
+def open_browser(downloads=None, performance=False):
     options = webdriver.ChromeOptions()
     for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage",
                      "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                      "--window-size=1200,800"):
         options.add_argument(argument)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    options.set_capability("goog:loggingPrefs", {
+        "browser": "ALL", **({"performance": "ALL"} if performance else {})})
     if downloads:
         options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
     return webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))

@@ -10,8 +10,16 @@
 #include <utility>
 #include <vector>
 
+#if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)
+#define SURFACEDIFFUSION_HAS_THREADS 0
+#else
+#define SURFACEDIFFUSION_HAS_THREADS 1
+#endif
+
 namespace SurfaceDiffusion
 {
+
+#if SURFACEDIFFUSION_HAS_THREADS
 
 namespace
 {
@@ -92,5 +100,15 @@ void RunInBackground(std::function<void()> task, const ProgressMonitor& progress
   work.Result.get();
   progress.Report(1.0);
 }
+
+#else // a page: who wants to stop the task ends the worker that it runs in
+
+void RunInBackground(std::function<void()> task, const ProgressMonitor& progress)
+{
+  task();
+  progress.Report(1.0);
+}
+
+#endif
 
 } // namespace SurfaceDiffusion

@@ -49,7 +49,7 @@ void ForWidth(Index width, const Work& work)
 }
 
 template <int K>
-double* Row(double* w, Index i)
+double* PlaceOfRow(double* w, Index i)
 {
   return w + static_cast<std::ptrdiff_t>(i) * K;
 }
@@ -59,7 +59,7 @@ template <int K, int Width>
 void Forward(const SparseFactor& factor, double* all, Index number)
 {
   const Panel<Width> panel(factor.L, number);
-  double* const result = Row<K>(all, panel.First);
+  double* const result = PlaceOfRow<K>(all, panel.First);
   double w[Width * K];
   for (int c = 0; c < Width * K; ++c)
   {
@@ -85,7 +85,7 @@ void Forward(const SparseFactor& factor, double* all, Index number)
   }
   for (Index s = 0; s < panel.Count; ++s)
   {
-    double* const wi = Row<K>(all, panel.Rows[s]);
+    double* const wi = PlaceOfRow<K>(all, panel.Rows[s]);
     double l[Width];
     for (int a = 0; a < Width; ++a)
     {
@@ -108,7 +108,7 @@ template <int K, int Width>
 void Backward(const SparseFactor& factor, double* all, Index number)
 {
   const Panel<Width> panel(factor.L, number);
-  double* const result = Row<K>(all, panel.First);
+  double* const result = PlaceOfRow<K>(all, panel.First);
   double w[Width * K];
   for (int a = 0; a < Width; ++a)
   {
@@ -119,7 +119,7 @@ void Backward(const SparseFactor& factor, double* all, Index number)
   }
   for (Index s = 0; s < panel.Count; ++s)
   {
-    const double* const wi = Row<K>(all, panel.Rows[s]);
+    const double* const wi = PlaceOfRow<K>(all, panel.Rows[s]);
     for (int a = 0; a < Width; ++a)
     {
       const double l = panel.Below[static_cast<std::ptrdiff_t>(s) * Width + a];

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// Files of surfaces and of values, read from memory. Every reader takes memory in proportion to the
+// bytes that it is given, whatever numbers a file declares, and says in one sentence what is wrong.
+namespace SurfaceDiffusion::Files
+{
+
+/// A file that cannot be read or written; one line.
+struct FileError : std::runtime_error
+{
+  using std::runtime_error::runtime_error;
+};
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Numbers at points or cells.
+struct FileArray
+{
+  std::string Name = {};
+  bool OnCells = false;
+  std::size_t Components = 1;
+  std::vector<double> Numbers = {}; ///< row after row
+  bool AreBytes = false; ///< unsigned char, as colours are
+
+  std::size_t Rows() const { return this->Numbers.size() / this->Components; }
+};
+
+/// A surface, or values alone, for which there are no points.
+struct SurfaceFile
+{
+  std::string Kind = {}; ///< the format
+  std::vector<double> Points = {}; ///< three coordinates each
+  std::vector<std::int64_t> Corners = {}; ///< of all cells
+  std::vector<std::size_t> Begin = { 0 }; ///< per cell the first of its corners; the end of all
+  std::vector<FileArray> Arrays = {};
+  std::string Unit = {}; ///< of the coordinates; empty: the file does not say
+  std::vector<std::string> Warnings = {};
+
+  std::size_t NumberOfPoints() const { return this->Points.size() / 3; }
+  std::size_t NumberOfCells() const { return this->Begin.size() - 1; }
+  void AddCell(const std::vector<std::int64_t>& corners)
+  {
+    this->Corners.insert(this->Corners.end(), corners.begin(), corners.end());
+    this->Begin.push_back(this->Corners.size());
+  }
+};
+
+/// Read a file by its content; the name decides where the content does not. Throws FileError.
+SurfaceFile ReadFile(const std::string& name, const std::uint8_t* data, std::size_t size);
+
+/// The surface in the format that the name ends in. Throws FileError.
+Bytes WriteFile(const std::string& name, const SurfaceFile& surface);
+
+} // namespace SurfaceDiffusion::Files
