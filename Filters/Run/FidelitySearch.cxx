@@ -18,6 +18,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -126,8 +127,8 @@ private:
   };
   Noise FindNoise(VertexRange range, Notes& notes);
   double TypicalFactor(VertexRange range) const;
-  void AddDirections(VertexRange range);
-  Values CellDirection(VertexRange range, int number) const;
+  void AddDirections(const Part& part);
+  void SetCellDirections();
   void LeaveOutConstantParts(VertexRange range);
   void NoteSmoothData(double estimate, Notes& notes) const;
   std::unique_ptr<WeightSearch> MakeSearch(VertexRange range, const Noise& noise) const;
@@ -143,7 +144,7 @@ private:
   std::vector<Part> Parts; ///< connected components, the largest first
   std::optional<NoiseEstimate> OfAll; ///< for components of too few points
   PointData Compared; ///< the measured data that the result has to differ from by the noise
-  std::vector<Values> Directions; ///< see RiskDirection(); as many as the smallest part needs
+  std::vector<Values> Directions; ///< see SetRiskDirection(); as many as the smallest part needs
 };
 
 ColumnSearch::ColumnSearch(
@@ -176,64 +177,85 @@ ColumnSearch::ColumnSearch(
     }
     if (this->Parts.back().Search->NeedsRisk())
     {
-      this->AddDirections(range);
+      this->AddDirections(this->Parts.back());
     }
   }
-}
-
-void ColumnSearch::AddDirections(VertexRange range)
-{
-  const auto count = static_cast<std::size_t>(NumberOfRiskDirections(range.Size()));
-  const Values zero = Values::Zero(this->Data.Given.rows(), this->Data.Given.cols());
-  this->Directions.resize(std::max(this->Directions.size(), count), zero);
-  for (std::size_t d = 0; d < count; ++d)
+  if (inputs.Cells && !this->Directions.empty())
   {
-    this->Directions[d] += this->Inputs.Cells
-      ? this->CellDirection(range, static_cast<int>(d))
-      : RiskDirection(this->Inputs.Surface.Mesh(), this->Pattern, this->Inputs.Surface.Points(),
-          this->Compared, range, this->Parts.back().Noise, static_cast<int>(d));
+    this->SetCellDirections();
   }
 }
 
-/// A direction as RiskDirection() of white noise on cells, as vertices have it.
-Values ColumnSearch::CellDirection(VertexRange range, int number) const
+void ColumnSearch::AddDirections(const Part& part)
+{
+  const auto count = static_cast<std::size_t>(NumberOfRiskDirections(part.Vertices.Size()));
+  const Values zero = Values::Zero(this->Data.Given.rows(), this->Data.Given.cols());
+  this->Directions.resize(std::max(this->Directions.size(), count), zero);
+  for (std::size_t d = 0; d < count && !this->Inputs.Cells; ++d)
+  {
+    SetRiskDirection(this->Inputs.Surface.Mesh(), this->Pattern, this->Inputs.Surface.Points(),
+      this->Compared, part.Vertices, part.Noise, static_cast<int>(d), this->Directions[d]);
+  }
+}
+
+/// The directions, as SetRiskDirection(), of white noise on cells, as vertices have it.
+void ColumnSearch::SetCellDirections()
 {
   const CellTransfer& cells = *this->Inputs.Cells;
-  std::vector<std::pair<double, Index>> order; // by the means of the data
+  std::vector<std::size_t> partOf(static_cast<std::size_t>(this->Data.Given.rows()));
+  for (std::size_t part = 0; part < this->Parts.size(); ++part)
+  {
+    const VertexRange range = this->Parts[part].Vertices;
+    std::fill(partOf.begin() + range.Begin, partOf.begin() + range.End, part);
+  }
+  std::vector<std::tuple<std::size_t, double, Index>>
+    order; // by the means of the data in each part
   for (Index c = 0; c < cells.NumberOfCells(); ++c)
   {
     if (cells.Participates(c))
     {
+      Index vertex = 0;
+      cells.ForEachVertexOf(c, [&](Index i) { vertex = i; });
       const auto row = [&](Index i) { return this->Data.Given.row(i).sum(); };
-      order.emplace_back(cells.MeanOver(c, row), c);
+      order.emplace_back(partOf[static_cast<std::size_t>(vertex)], cells.MeanOver(c, row), c);
     }
   }
   std::sort(order.begin(), order.end());
-  Values signs = Values::Zero(cells.NumberOfCells(), this->Data.Given.cols());
-  std::map<Index, std::int64_t> rankOf; // of cells that were one when they were measured
-  for (const auto& [mean, c] : order)
+  // The rank in the part; of cells that were one when they were measured that of the first.
+  std::vector<std::int64_t> ranks(static_cast<std::size_t>(cells.NumberOfCells()), 0);
+  std::map<Index, std::int64_t> rankOfMeasured;
+  std::size_t lastPart = 0;
+  std::int64_t next = 0;
+  for (const auto& [part, mean, c] : order)
   {
+    next = part == lastPart ? next : 0;
+    lastPart = part;
     const Index measured =
       this->Inputs.GivenCells.empty() ? c : this->Inputs.GivenCells[static_cast<std::size_t>(c)];
-    const std::int64_t rank =
-      rankOf.try_emplace(measured, static_cast<std::int64_t>(rankOf.size())).first->second;
-    for (Eigen::Index k = 0; k < signs.cols(); ++k)
+    const auto [entry, isNew] = rankOfMeasured.try_emplace(measured, next);
+    next += isNew ? 1 : 0;
+    ranks[static_cast<std::size_t>(c)] = entry->second;
+  }
+  const double gain = NoiseGain(this->Inputs);
+  for (std::size_t d = 0; d < this->Directions.size(); ++d)
+  {
+    Values signs(cells.NumberOfCells(), this->Data.Given.cols());
+    for (Eigen::Index k = 0; k < signs.size(); ++k)
     {
-      signs(c, k) = UniformRandom(number, k, rank) < 0.5 ? -1.0 : 1.0;
+      const auto c = static_cast<std::size_t>(k / signs.cols());
+      const double random = UniformRandom(static_cast<int>(d), k % signs.cols(), ranks[c]);
+      signs(static_cast<Eigen::Index>(c), k % signs.cols()) = random < 0.5 ? -1.0 : 1.0;
+    }
+    this->Directions[d] = cells.ToVertices(signs, Vector::Ones(cells.NumberOfCells())).Of;
+    for (Index i = 0; i < static_cast<Index>(this->Directions[d].rows()); ++i)
+    {
+      const bool isBetween = this->Data.Measured && this->Data.Measured->IsBetween[i];
+      const PointData& data = isBetween ? this->Data : this->Compared;
+      const double factor = data.FidelityFactor(i);
+      const bool isUsed = !data.Fixed[i] && factor > 0.0;
+      this->Directions[d].row(i) *= isUsed ? 1.0 / (gain * std::sqrt(factor)) : 0.0;
     }
   }
-  Values direction = cells.ToVertices(signs, Vector::Ones(cells.NumberOfCells())).Of;
-  const double gain = NoiseGain(this->Inputs);
-  const auto isBetween = [&](Index i)
-  { return this->Data.Measured && this->Data.Measured->IsBetween[i]; };
-  for (Index i = 0; i < direction.rows(); ++i)
-  {
-    const PointData& data = isBetween(i) ? this->Data : this->Compared;
-    const double factor = data.FidelityFactor(i);
-    const bool isUsed = i >= range.Begin && i < range.End && !data.Fixed[i] && factor > 0.0;
-    direction.row(i) *= isUsed ? 1.0 / (gain * std::sqrt(factor)) : 0.0;
-  }
-  return direction;
 }
 
 /// The risk is that of white noise. Correlated noise is left by the discrepancy principle. So is noise

@@ -358,7 +358,10 @@ TEST(ExactDistance, DistancesAreAMetricAndTheSameOnAFinerMeshOfTheSurface)
         {
           const double over =
             from[static_cast<std::size_t>(i)][k] + from[static_cast<std::size_t>(k)][j];
-          ASSERT_LE(here - over, 1e-12);
+          if (std::isfinite(over))
+          {
+            ASSERT_LE(here - over, 1e-12);
+          }
         }
       }
     }

@@ -148,7 +148,8 @@ TEST(UnbiasedRisk, MeasuresTheTraceOfALinearModelAndWhatItRemoves)
   constexpr int count = 200;
   for (int d = 0; d < count; ++d)
   {
-    directions.push_back(RiskDirection(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, d));
+    directions.emplace_back(n, 1);
+    SetRiskDirection(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, d, directions.back());
     changed.push_back(smooth(f + 0.5 * directions.back()));
   }
   const NoiseResponse found =
@@ -161,7 +162,8 @@ TEST(UnbiasedRisk, MeasuresTheTraceOfALinearModelAndWhatItRemoves)
   // Half of the values known, with factors, of which the direction has the deviations.
   data.FidelityFactors = Vector::Constant(n, 4.0);
   data.Missing.head(n / 2) = true;
-  const Values direction = RiskDirection(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, 0);
+  Values direction(n, 1);
+  SetRiskDirection(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, 0, direction);
   EXPECT_EQ(direction.topRows(n / 2).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_EQ(direction.bottomRows(n - n / 2).cwiseAbs().minCoeff(), 0.5);
 }
@@ -179,8 +181,9 @@ TEST(UnbiasedRisk, OutliersHaveANoiseOfTheirOwnAndJumpsHaveNot)
     f(i, 0) = s.Vertices(mesh.InputVertex()[i], 2) > 0.2 ? 1.0 : 0.0;
   }
   f(7, 0) += 5.0;
-  const Values direction = RiskDirection(
-    mesh, assembler->Pattern(), s.Vertices, PointData::FromValues(f), { 0, n }, 0.1, 0);
+  Values direction(n, 1);
+  SetRiskDirection(
+    mesh, assembler->Pattern(), s.Vertices, PointData::FromValues(f), { 0, n }, 0.1, 0, direction);
   for (Index i = 0; i < n; ++i)
   {
     EXPECT_NEAR(std::abs(direction(i, 0)), i == 7 ? 50.0 : 1.0, i == 7 ? 10.0 : 0.0) << i;

@@ -127,16 +127,16 @@ int NumberOfRiskDirections(Index numberOfVertices)
   return std::clamp(8000 / std::max(numberOfVertices, Index{ 1 }), Index{ 1 }, Index{ 8 });
 }
 
-Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
+void SetRiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
   const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range, double noise,
-  int number)
+  int number, Values& direction)
 {
   const auto isUsed = [&](Index i)
   {
     return !data.Fixed[i] && data.FidelityFactor(i) > 0.0 &&
       !(data.Measured && data.Measured->IsBetween[i]);
   };
-  Values direction = Values::Zero(data.Given.rows(), data.Given.cols());
+  direction.middleRows(range.Begin, range.Size()).setZero();
   std::int64_t rank = 0;
   for (const Index i : SortByValues(mesh, points, data.Given, range))
   {
@@ -155,7 +155,6 @@ Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
   {
     InterpolateBetween(mesh, pattern, points, data, range, direction);
   }
-  return direction;
 }
 
 NoiseResponse MeasureNoiseResponse(const TriangleMesh& mesh, const PointData& data, const Values& u,

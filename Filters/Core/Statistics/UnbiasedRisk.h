@@ -41,7 +41,7 @@ struct NoiseResponse
 /// vertices needs.
 int NumberOfRiskDirections(Index numberOfVertices);
 
-/// A random direction p: one row per vertex, 0 where a value is not known or does not change, and
+/// Set the rows of a range in a random direction p: 0 where a value is not known or does not change, and
 /// interpolated at a vertex whose value was. Elsewhere it is +-1/sqrt(w_i), or
 /// +-|f_i - the mean of the neighbours|/noise at an outlier, whose value is beyond those of all
 /// neighbours by more than twice the noise, which differences across jumps of the signal are not.
@@ -49,9 +49,9 @@ int NumberOfRiskDirections(Index numberOfVertices);
 /// its range: it depends neither on the numbering and the units, nor on other ranges. number: of the
 /// direction. mesh: of the data. points: of the input, rows as in TriangleMesh::InputVertex.
 /// pattern: of the stiffness matrix.
-Values RiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
+void SetRiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
   const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range, double noise,
-  int number);
+  int number, Values& direction);
 
 /// From states u of f and changed[d] of f + step directions[d], for the first `count` of these.
 /// `data`: those that count, see Discrepancy().
