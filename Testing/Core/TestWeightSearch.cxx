@@ -148,7 +148,7 @@ TEST(UnbiasedRisk, MeasuresTheTraceOfALinearModelAndWhatItRemoves)
   constexpr int count = 200;
   for (int d = 0; d < count; ++d)
   {
-    directions.emplace_back(n, 1);
+    directions.emplace_back(n, f.cols());
     SetRiskDirection(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, d, directions.back());
     changed.push_back(smooth(f + 0.5 * directions.back()));
   }
@@ -162,7 +162,7 @@ TEST(UnbiasedRisk, MeasuresTheTraceOfALinearModelAndWhatItRemoves)
   // Half of the values known, with factors, of which the direction has the deviations.
   data.FidelityFactors = Vector::Constant(n, 4.0);
   data.Missing.head(n / 2) = true;
-  Values direction(n, 1);
+  Values direction(n, f.cols());
   SetRiskDirection(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, 0, direction);
   EXPECT_EQ(direction.topRows(n / 2).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_EQ(direction.bottomRows(n - n / 2).cwiseAbs().minCoeff(), 0.5);
