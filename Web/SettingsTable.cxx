@@ -253,24 +253,14 @@ std::string DescribeModels()
     const std::unique_ptr<Settings> settings = model.Make();
     settings->Visit(lister);
     lister.AddRefinement(dynamic_cast<const TextureSettings*>(settings.get()) != nullptr);
-    std::vector<std::string> inputs;
-    std::string word;
-    for (const char c : std::string(model.Inputs) + ' ')
-    {
-      if (c != ' ')
-      {
-        word += c;
-        continue;
-      }
-      inputs.push_back("{\"name\":" + Json::Quoted(word) + "}");
-      word.clear();
-    }
+    const auto input = [](const std::string& word)
+    { return "{\"name\":" + Json::Quoted(word) + "}"; };
     const auto itself = [](const std::string& text) { return text; };
     return "{\"name\":" + Json::Quoted(model.Function) +
       ",\"title\":" + Json::Quoted(TitleOf(model.Function)) +
       ",\"data\":" + Json::Quoted(model.Data) + ",\"needsData\":" + Json::Bool(model.NeedsData) +
       ",\"settings\":" + Json::List(lister.Entries, itself) +
-      ",\"inputs\":" + Json::List(inputs, itself) + "}";
+      ",\"inputs\":" + Json::List(WordsOf(model.Inputs), input) + "}";
   };
   return "{\"models\":" + Json::List(SettingsOfModels, describe) + "}";
 }

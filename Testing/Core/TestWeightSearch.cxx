@@ -82,7 +82,7 @@ TEST(WeightSearch, FindsTheWeightOfTheSmallestRiskFromAnyStart)
     }
     for (const bool isGiven : { true, false })
     {
-      // Without a level, a signal that leaves less to remove than noise is not told from uneven noise.
+      // Without a given level the search cannot distinguish a strong signal from uneven noise.
       if (signal > 1000.0 && !isGiven)
       {
         continue;

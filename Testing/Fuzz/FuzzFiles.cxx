@@ -5,7 +5,7 @@
 #include <iterator>
 #include <string>
 
-/// The first byte chooses the name, by which some formats are told apart.
+/// The first byte selects the file name, on which the choice of the format depends for some files.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t count)
 {
   const char* const names[] = { "a", "a.stl", "a.vtp", "a.csv", "lh.thickness", "a.gz" };

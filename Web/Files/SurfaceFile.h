@@ -9,7 +9,7 @@
 #include <vector>
 
 // Files of surfaces and of values, read from memory. Every reader takes memory in proportion to the
-// bytes that it is given, whatever numbers a file declares, and says in one sentence what is wrong.
+// bytes that it reads, whatever counts a file declares. The text of an error is one sentence.
 namespace SurfaceDiffusion::Files
 {
 

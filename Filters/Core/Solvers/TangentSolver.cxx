@@ -14,7 +14,7 @@ namespace
 
 /// Row `at`; K columns, known to the compiler unless K is 0.
 template <int K, typename Number>
-auto MapRow(Number* at, Eigen::Index columns)
+auto Row(Number* at, Eigen::Index columns)
 {
   using Numbers = Eigen::Matrix<double, 1, K == 0 ? Eigen::Dynamic : K>;
   return Eigen::Map<std::conditional_t<std::is_const<Number>::value, const Numbers, Numbers>>(
@@ -41,8 +41,8 @@ struct ProjectedSystem : MatrixSystem
   void Project(Index i, double* row) const
   {
     const Eigen::Index columns = this->U.cols();
-    auto x = MapRow<K>(row, columns);
-    const auto u = MapRow<K>(&this->U(i, 0), columns);
+    auto x = Row<K>(row, columns);
+    const auto u = Row<K>(&this->U(i, 0), columns);
     if (this->Fixed[i])
     {
       x.setZero();
@@ -92,7 +92,7 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
     {
       this->InverseDiagonal[i] = 1.0 / this->InverseDiagonal[i];
       return inertia[i] * inertia[i] * this->InverseDiagonal[i] *
-        MapRow<K>(&system.U(i, 0), columns).squaredNorm();
+        Row<K>(&system.U(i, 0), columns).squaredNorm();
     });
   const double start = reduction.SumOverVertices(this->Parallel, n,
     [&](Index i)
@@ -101,7 +101,7 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
       double* const r = &this->Residual(i, 0);
       projected.Project<K>(i, r);
       projected.Project<K>(i, r);
-      return this->InverseDiagonal[i] * MapRow<K>(r, columns).squaredNorm();
+      return this->InverseDiagonal[i] * Row<K>(r, columns).squaredNorm();
     });
 
   const double reference = std::max(scale, start);

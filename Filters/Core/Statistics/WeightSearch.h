@@ -20,7 +20,7 @@ struct FidelityChoice
   bool IsFound = true; ///< false: Weight is the end of the search
 };
 
-/// A search for a fidelity weight: it is told what the Trial() gives until it IsDone().
+/// A search for a fidelity weight. Take() receives the response at Trial(), until IsDone().
 class WeightSearch
 {
 public:
