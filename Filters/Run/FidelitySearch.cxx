@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/FidelitySearch.h"
 
-#include "Core/Foundation/Random.h"
 #include "Core/Models/ColumnModels.h"
 #include "Core/Models/HeatBlur.h"
 #include "Core/Statistics/MeasuredVertices.h"
 #include "Core/Statistics/NoiseCorrelation.h"
 #include "Core/Statistics/NoiseLevel.h"
+#include "Core/Statistics/RiskDirections.h"
 #include "Core/Statistics/UnbiasedRisk.h"
 #include "Core/Statistics/WeightSearch.h"
 #include "Run/CorrelatedNoise.h"
@@ -18,7 +18,6 @@
 #include <map>
 #include <numeric>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -102,11 +101,8 @@ public:
   void Advance(const FidelityModelMaker& makeModel);
   void WarnIfNotFound(Notes& notes) const;
 
-  /// That of the largest component; the start on a surface without triangles.
-  double Weight() const
-  {
-    return this->Parts.empty() ? this->Task.Start : this->Parts.front().Search->Trial();
-  }
+  /// That of the largest component; 1 on a surface without triangles.
+  double Weight() const { return this->Parts.empty() ? 1.0 : this->Parts.front().Search->Trial(); }
   /// The weights over that of the largest component, per vertex; no entry if there is one.
   Vector Factors() const;
 
@@ -127,8 +123,8 @@ private:
   };
   Noise FindNoise(VertexRange range, Notes& notes);
   double TypicalFactor(VertexRange range) const;
-  void AddDirections(const Part& part);
-  void SetCellDirections();
+  double StartOf(VertexRange range) const;
+  void SetDirections();
   void LeaveOutConstantParts(VertexRange range);
   void NoteSmoothData(double estimate, Notes& notes) const;
   std::unique_ptr<WeightSearch> MakeSearch(VertexRange range, const Noise& noise) const;
@@ -144,7 +140,7 @@ private:
   std::vector<Part> Parts; ///< connected components, the largest first
   std::optional<NoiseEstimate> OfAll; ///< for components of too few points
   PointData Compared; ///< the measured data that the result has to differ from by the noise
-  std::vector<Values> Directions; ///< see SetRiskDirection(); as many as the smallest part needs
+  std::vector<Values> Directions; ///< see SetRiskDirections(); as many as the smallest part needs
 };
 
 ColumnSearch::ColumnSearch(
@@ -166,7 +162,7 @@ ColumnSearch::ColumnSearch(
     const VertexRange range = rangeOf(c);
     if (order.size() > 1 && !this->HasComparedValues(range))
     {
-      this->Parts.push_back({ range, 0.0, std::make_unique<KnownWeight>(task.Start) });
+      this->Parts.push_back({ range, 0.0, std::make_unique<KnownWeight>(this->StartOf(range)) });
       continue;
     }
     const Noise noise = this->FindNoise(range, notes);
@@ -175,87 +171,54 @@ ColumnSearch::ColumnSearch(
     {
       this->LeaveOutConstantParts(range);
     }
-    if (this->Parts.back().Search->NeedsRisk())
+  }
+  this->SetDirections();
+}
+
+void ColumnSearch::SetDirections()
+{
+  const bool onCells = this->Inputs.Cells != nullptr;
+  std::vector<VertexRange> ranges;
+  for (const Part& part : this->Parts)
+  {
+    ranges.push_back(part.Vertices);
+    if (part.Search->NeedsRisk())
     {
-      this->AddDirections(this->Parts.back());
+      const auto count = static_cast<std::size_t>(NumberOfRiskDirections(part.Vertices.Size()));
+      if (onCells)
+      {
+        this->Directions.resize(std::max(this->Directions.size(), count));
+        continue;
+      }
+      SetRiskDirections(this->Inputs.Surface.Mesh(), this->Pattern, this->Inputs.Surface.Points(),
+        this->Compared, part.Vertices, part.Noise, count, this->Directions);
     }
   }
-  if (inputs.Cells && !this->Directions.empty())
+  if (onCells && !this->Directions.empty())
   {
-    this->SetCellDirections();
+    SetRiskDirectionsOfCells(*this->Inputs.Cells, this->Inputs.GivenCells, this->Data,
+      this->Compared, ranges, NoiseGain(this->Inputs), this->Directions);
   }
 }
 
-void ColumnSearch::AddDirections(const Part& part)
+/// By the edges of the component, so that it does not depend on the others.
+double ColumnSearch::StartOf(VertexRange range) const
 {
-  const auto count = static_cast<std::size_t>(NumberOfRiskDirections(part.Vertices.Size()));
-  const Values zero = Values::Zero(this->Data.Given.rows(), this->Data.Given.cols());
-  this->Directions.resize(std::max(this->Directions.size(), count), zero);
-  for (std::size_t d = 0; d < count && !this->Inputs.Cells; ++d)
+  const TriangleMesh& mesh = this->Inputs.Surface.Mesh();
+  const Points& points = this->Inputs.Surface.Points();
+  double sum = 0.0;
+  double count = 0.0;
+  for (Index i = range.Begin; i < range.End; ++i)
   {
-    SetRiskDirection(this->Inputs.Surface.Mesh(), this->Pattern, this->Inputs.Surface.Points(),
-      this->Compared, part.Vertices, part.Noise, static_cast<int>(d), this->Directions[d]);
-  }
-}
-
-/// The directions, as SetRiskDirection(), of white noise on cells, as vertices have it.
-void ColumnSearch::SetCellDirections()
-{
-  const CellTransfer& cells = *this->Inputs.Cells;
-  std::vector<std::size_t> partOf(static_cast<std::size_t>(this->Data.Given.rows()));
-  for (std::size_t part = 0; part < this->Parts.size(); ++part)
-  {
-    const VertexRange range = this->Parts[part].Vertices;
-    std::fill(partOf.begin() + range.Begin, partOf.begin() + range.End, part);
-  }
-  std::vector<std::tuple<std::size_t, double, Index>>
-    order; // by the means of the data in each part
-  for (Index c = 0; c < cells.NumberOfCells(); ++c)
-  {
-    if (cells.Participates(c))
+    for (Index slot = this->Pattern.Outer[i]; slot < this->Pattern.Outer[i + 1]; ++slot)
     {
-      Index vertex = 0;
-      cells.ForEachVertexOf(c, [&](Index i) { vertex = i; });
-      const auto row = [&](Index i) { return this->Data.Given.row(i).sum(); };
-      order.emplace_back(partOf[static_cast<std::size_t>(vertex)], cells.MeanOver(c, row), c);
+      const Index j = this->Pattern.Inner[slot];
+      sum += (points.row(mesh.InputVertex()[i]) - points.row(mesh.InputVertex()[j])).norm();
+      count += j != i ? 1.0 : 0.0;
     }
   }
-  std::sort(order.begin(), order.end());
-  // The rank in the part; of cells that were one when they were measured that of the first.
-  std::vector<std::int64_t> ranks(static_cast<std::size_t>(cells.NumberOfCells()), 0);
-  std::map<Index, std::int64_t> rankOfMeasured;
-  std::size_t lastPart = 0;
-  std::int64_t next = 0;
-  for (const auto& [part, mean, c] : order)
-  {
-    next = part == lastPart ? next : 0;
-    lastPart = part;
-    const Index measured =
-      this->Inputs.GivenCells.empty() ? c : this->Inputs.GivenCells[static_cast<std::size_t>(c)];
-    const auto [entry, isNew] = rankOfMeasured.try_emplace(measured, next);
-    next += isNew ? 1 : 0;
-    ranks[static_cast<std::size_t>(c)] = entry->second;
-  }
-  const double gain = NoiseGain(this->Inputs);
-  for (std::size_t d = 0; d < this->Directions.size(); ++d)
-  {
-    Values signs(cells.NumberOfCells(), this->Data.Given.cols());
-    for (Eigen::Index k = 0; k < signs.size(); ++k)
-    {
-      const auto c = static_cast<std::size_t>(k / signs.cols());
-      const double random = UniformRandom(static_cast<int>(d), k % signs.cols(), ranks[c]);
-      signs(static_cast<Eigen::Index>(c), k % signs.cols()) = random < 0.5 ? -1.0 : 1.0;
-    }
-    this->Directions[d] = cells.ToVertices(signs, Vector::Ones(cells.NumberOfCells())).Of;
-    for (Index i = 0; i < static_cast<Index>(this->Directions[d].rows()); ++i)
-    {
-      const bool isBetween = this->Data.Measured && this->Data.Measured->IsBetween[i];
-      const PointData& data = isBetween ? this->Data : this->Compared;
-      const double factor = data.FidelityFactor(i);
-      const bool isUsed = !data.Fixed[i] && factor > 0.0;
-      this->Directions[d].row(i) *= isUsed ? 1.0 / (gain * std::sqrt(factor)) : 0.0;
-    }
-  }
+  const double h = sum > 0.0 ? sum / count / mesh.LengthUnit() : 1.0;
+  return 1.0 / (this->Task.StartsByArea ? h * h : h);
 }
 
 /// The risk is that of white noise. Correlated noise is left by the discrepancy principle. So is noise
@@ -265,10 +228,10 @@ std::unique_ptr<WeightSearch> ColumnSearch::MakeSearch(VertexRange range, const 
 {
   if (noise.Level == 0.0)
   {
-    return std::make_unique<KnownWeight>(WeightWithoutNoise * this->Task.Start);
+    return std::make_unique<KnownWeight>(WeightWithoutNoise * this->StartOf(range));
   }
   const double unit = this->Task.IsStartOverNoise ? noise.Level : 1.0;
-  const double start = this->Task.Start / (unit * this->TypicalFactor(range));
+  const double start = this->StartOf(range) / (unit * this->TypicalFactor(range));
   if (noise.IsWhite && !this->Task.Blur)
   {
     return std::make_unique<RiskSearch>(noise.Level, start, this->Task.NoiseLevel > 0.0);

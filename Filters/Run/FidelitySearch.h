@@ -20,8 +20,9 @@ using FidelityModelMaker = std::function<std::unique_ptr<Model>(PointData data, 
 struct FidelityTask
 {
   double NoiseLevel = 0.0; ///< in array units; 0: estimated
-  double Start = 1.0; ///< the first guess, in units of the numerics
-  bool IsStartOverNoise = false; ///< whether the first guess is Start over the noise
+  bool StartsByArea =
+    true; ///< whether weights are 1/length^2, of which 1/h^2 is the first guess; or 1/h
+  bool IsStartOverNoise = false; ///< whether the first guess is that over the noise
   int Steps = 1; ///< the states that are compared with the data are those after so many
   bool ColumnsShareWeight = true; ///< false: each has its own
   double CellNoiseGain = 0.0; ///< of data on cells, see FindCellNoiseGain()

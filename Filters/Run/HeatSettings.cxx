@@ -225,7 +225,6 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
     const auto blur = this->Blur.Make(inputs, {});
     FidelityTask search;
     search.NoiseLevel = this->NoiseLevel;
-    search.Start = 1.0 / (h * h);
     search.ColumnsShareWeight = false;
     search.IsLinear = true;
     search.Blur = blur.get();
@@ -286,7 +285,6 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
     };
     FidelityTask search;
     search.NoiseLevel = this->NoiseLevel;
-    search.Start = 1.0 / (h * h);
     search.ColumnsShareWeight = false;
     search.IsLinear = true;
     fidelity = FindFidelity(inputs, search, solve, result);

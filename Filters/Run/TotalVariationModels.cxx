@@ -116,14 +116,13 @@ double TotalVariationModels::FidelityUnit() const
 
 FidelityWeights TotalVariationModels::FindWeights(RunResult& result) const
 {
-  const double h = this->Units.CoreEdgeLength();
   const bool dimensionless = GetEdgeFunction(this->Options.EdgeFunction).Dimensionless;
   const double largest = this->Options.Blur.IsOn() ? BlurSearchTolerance : SearchTolerance;
   const double tolerance = std::max(largest, this->Options.StopTolerance);
   const auto blur = this->Options.Blur.IsOn() ? this->Options.Blur.Make(this->Inputs, {}) : nullptr;
   FidelityTask search;
   search.NoiseLevel = this->Options.NoiseLevel;
-  search.Start = 1.0 / (dimensionless ? h * h : h);
+  search.StartsByArea = dimensionless;
   search.IsStartOverNoise = !dimensionless;
   search.Steps = this->Options.DescribeModel().NumberOfSteps;
   search.ColumnsShareWeight =

@@ -454,4 +454,47 @@ TEST(AutomaticWeight, IsTheDefaultOfTikhonovDeblurring)
   ExpectFoundWeight<HeatSettings>(HeatMode::SteadyState, 0.85);
 }
 
+// One with edges of .3 of the other's and a tenth of its noise: no search starts from means over both.
+TEST(AutomaticWeight, AComponentHasTheResultThatItHasAlone)
+{
+  const Testing::Surface coarse = Testing::Icosphere(3);
+  const Testing::Surface fine =
+    Testing::Moved(Testing::Icosphere(4, 0.6), Eigen::RowVector3d(3.0, 0.0, 0.0));
+  const auto whole = [](const Testing::Surface& s)
+  { return std::vector<char>(static_cast<std::size_t>(s.Vertices.rows()), 1); };
+  const Noisy ofCoarse = MakeNoisy(coarse, whole(coarse), 0.2, 0.0, true);
+  const Noisy ofFine = MakeNoisy(fine, whole(fine), 0.02, 0.0, true);
+  const Testing::Surface both = Testing::Joined(coarse, fine);
+  Noisy together = MakeNoisy(both, whole(both), 0.0, 0.0, true);
+  together.Input.Data.Data.Values << ofCoarse.Input.Data.Data.Values, ofFine.Input.Data.Data.Values;
+
+  const auto result = [](const Noisy& data, const auto& settings)
+  {
+    SurfaceDiffusion::Run run(SerialFor());
+    const Values u = StateOf(run, { data.Input.Block() }, settings);
+    const Surface& surface = *run.GetBlock(0).Surface;
+    Vector ofPoints(data.Clean.size());
+    for (Eigen::Index i = 0; i < ofPoints.size(); ++i)
+    {
+      ofPoints[i] = u(surface.VertexOf(static_cast<Index>(i)), 0);
+    }
+    return ofPoints;
+  };
+  const auto difference = [&](auto settings)
+  {
+    settings.AutomaticFidelity = true;
+    Vector apart(together.Clean.size());
+    apart << result(ofCoarse, settings), result(ofFine, settings);
+    return (result(together, settings) - apart).cwiseAbs().maxCoeff();
+  };
+  HeatSettings heat;
+  heat.Mode = HeatMode::SteadyState;
+  heat.Tolerance = 1e-10;
+  EXPECT_LT(difference(heat), 1e-7);
+  TotalVariationSettings tv;
+  tv.Mode = TotalVariationMode::SteadyState;
+  tv.Units = UnitsMode::Absolute;
+  EXPECT_LT(difference(tv), 1e-3);
+}
+
 } // namespace SurfaceDiffusion

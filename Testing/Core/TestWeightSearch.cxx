@@ -3,6 +3,7 @@
 #include "Heat.h"
 #include "Meshes.h"
 
+#include "Core/Statistics/RiskDirections.h"
 #include "Core/Statistics/UnbiasedRisk.h"
 #include "Core/Statistics/WeightSearch.h"
 
@@ -143,14 +144,13 @@ TEST(UnbiasedRisk, MeasuresTheTraceOfALinearModelAndWhatItRemoves)
   const Values f = Testing::Noise(mesh, 3);
   PointData data = PointData::FromValues(f);
   const SparsePattern pattern = assembler->Pattern();
-  std::vector<Values> directions;
-  std::vector<Values> changed;
   constexpr int count = 200;
+  std::vector<Values> directions;
+  SetRiskDirections(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, count, directions);
+  std::vector<Values> changed;
   for (int d = 0; d < count; ++d)
   {
-    directions.emplace_back(n, f.cols());
-    SetRiskDirection(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, d, directions.back());
-    changed.push_back(smooth(f + 0.5 * directions.back()));
+    changed.push_back(smooth(f + 0.5 * directions[static_cast<std::size_t>(d)]));
   }
   const NoiseResponse found =
     MeasureNoiseResponse(mesh, data, smooth(f), changed, directions, count, 0.5, { 0, n });
@@ -162,8 +162,9 @@ TEST(UnbiasedRisk, MeasuresTheTraceOfALinearModelAndWhatItRemoves)
   // Half of the values known, with factors, of which the direction has the deviations.
   data.FidelityFactors = Vector::Constant(n, 4.0);
   data.Missing.head(n / 2) = true;
-  Values direction(n, f.cols());
-  SetRiskDirection(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, 0, direction);
+  directions.clear();
+  SetRiskDirections(mesh, pattern, s.Vertices, data, { 0, n }, 10.0, 1, directions);
+  const Values& direction = directions.front();
   EXPECT_EQ(direction.topRows(n / 2).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_EQ(direction.bottomRows(n - n / 2).cwiseAbs().minCoeff(), 0.5);
 }
@@ -181,12 +182,12 @@ TEST(UnbiasedRisk, OutliersHaveANoiseOfTheirOwnAndJumpsHaveNot)
     f(i, 0) = s.Vertices(mesh.InputVertex()[i], 2) > 0.2 ? 1.0 : 0.0;
   }
   f(7, 0) += 5.0;
-  Values direction(n, 1);
-  SetRiskDirection(
-    mesh, assembler->Pattern(), s.Vertices, PointData::FromValues(f), { 0, n }, 0.1, 0, direction);
+  std::vector<Values> directions;
+  SetRiskDirections(
+    mesh, assembler->Pattern(), s.Vertices, PointData::FromValues(f), { 0, n }, 0.1, 1, directions);
   for (Index i = 0; i < n; ++i)
   {
-    EXPECT_NEAR(std::abs(direction(i, 0)), i == 7 ? 50.0 : 1.0, i == 7 ? 10.0 : 0.0) << i;
+    EXPECT_NEAR(std::abs(directions[0](i, 0)), i == 7 ? 50.0 : 1.0, i == 7 ? 10.0 : 0.0) << i;
   }
 }
 

@@ -37,22 +37,6 @@ struct NoiseResponse
   double LargestVariance() const { return this->MeanSquare / this->Removed; }
 };
 
-/// How many random directions (M. Hutchinson, Commun. Stat. Simul. 19, 1990) a part of so many
-/// vertices needs.
-int NumberOfRiskDirections(Index numberOfVertices);
-
-/// Set the rows of a range in a random direction p: 0 where a value is not known or does not change, and
-/// interpolated at a vertex whose value was. Elsewhere it is +-1/sqrt(w_i), or
-/// +-|f_i - the mean of the neighbours|/noise at an outlier, whose value is beyond those of all
-/// neighbours by more than twice the noise, which differences across jumps of the signal are not.
-/// The sign is a hash of the rank of the vertex by its values, and by its place among equal ones, in
-/// its range: it depends neither on the numbering and the units, nor on other ranges. number: of the
-/// direction. mesh: of the data. points: of the input, rows as in TriangleMesh::InputVertex.
-/// pattern: of the stiffness matrix.
-void SetRiskDirection(const TriangleMesh& mesh, const SparsePattern& pattern,
-  const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range, double noise,
-  int number, Values& direction);
-
 /// From states u of f and changed[d] of f + step directions[d], for the first `count` of these.
 /// `data`: those that count, see Discrepancy().
 NoiseResponse MeasureNoiseResponse(const TriangleMesh& mesh, const PointData& data, const Values& u,
