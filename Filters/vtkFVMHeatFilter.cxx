@@ -9,6 +9,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkFVMHeatFilter);
 
 vtkFVMHeatFilter::vtkFVMHeatFilter()
@@ -24,3 +25,4 @@ void vtkFVMHeatFilter::UsePaperScheme()
   this->SetModeToTimeSteps();
   this->SetMassMatrixToLumped();
 }
+VTK_ABI_NAMESPACE_END

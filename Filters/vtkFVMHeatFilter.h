@@ -62,6 +62,7 @@
 
 #include "vtkSurfaceDataDiffusionAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkFVMHeatFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
@@ -214,5 +215,6 @@ private:
   vtkFVMHeatFilter(const vtkFVMHeatFilter&) = delete;
   void operator=(const vtkFVMHeatFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

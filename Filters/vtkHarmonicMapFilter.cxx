@@ -24,6 +24,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkHarmonicMapFilter);
 
 namespace
@@ -179,3 +180,4 @@ void vtkHarmonicMapFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "UseAsNormals: " << (this->UseAsNormals ? "On" : "Off") << "\n";
 }
+VTK_ABI_NAMESPACE_END

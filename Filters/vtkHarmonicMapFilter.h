@@ -62,6 +62,7 @@
 
 #include "vtkSurfaceDataDiffusionAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkHarmonicMapFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
@@ -192,5 +193,6 @@ private:
   vtkDataArray* FindComputedNormals(vtkPolyData* block);
   bool IsNormals(const SurfaceDiffusion::InputFields& fields, vtkPolyData* block) const;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -9,6 +9,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkIntrinsicTVFilter);
 
 vtkIntrinsicTVFilter::vtkIntrinsicTVFilter()
@@ -30,3 +31,4 @@ void vtkIntrinsicTVFilter::UsePaperScheme()
   this->SetDiscretizationToLinear();
   this->SetColorModelToRGB();
 }
+VTK_ABI_NAMESPACE_END

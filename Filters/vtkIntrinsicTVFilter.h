@@ -90,6 +90,7 @@
     this->SetAcrossEdgeFunction(ACROSS_EDGE_FUNCTION_##WORD);                                      \
   }
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkIntrinsicTVFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
@@ -418,5 +419,6 @@ private:
   vtkIntrinsicTVFilter(const vtkIntrinsicTVFilter&) = delete;
   void operator=(const vtkIntrinsicTVFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -9,6 +9,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkMumfordShahFilter);
 
 vtkMumfordShahFilter::vtkMumfordShahFilter()
@@ -22,3 +23,4 @@ vtkMumfordShahFilter::vtkMumfordShahFilter()
 }
 
 vtkMumfordShahFilter::~vtkMumfordShahFilter() = default;
+VTK_ABI_NAMESPACE_END

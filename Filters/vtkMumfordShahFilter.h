@@ -83,6 +83,7 @@
 
 #include "vtkSurfaceDataDiffusionAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkMumfordShahFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
@@ -158,5 +159,6 @@ private:
   vtkMumfordShahFilter(const vtkMumfordShahFilter&) = delete;
   void operator=(const vtkMumfordShahFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -12,6 +12,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceCurvatureFilter);
 
 vtkSurfaceCurvatureFilter::vtkSurfaceCurvatureFilter()
@@ -28,3 +29,4 @@ bool vtkSurfaceCurvatureFilter::FindFields(
   fields.Mask = inputs.Find(1, "MaskArray", 1);
   return true;
 }
+VTK_ABI_NAMESPACE_END

@@ -49,6 +49,7 @@
 
 #include "vtkSurfaceRunAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceCurvatureFilter : public vtkSurfaceRunAlgorithm
 {
 public:
@@ -72,5 +73,6 @@ private:
   vtkSurfaceCurvatureFilter(const vtkSurfaceCurvatureFilter&) = delete;
   void operator=(const vtkSurfaceCurvatureFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

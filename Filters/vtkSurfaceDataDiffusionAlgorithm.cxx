@@ -8,6 +8,7 @@
 
 #include <utility>
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkSurfaceDataDiffusionAlgorithm::vtkSurfaceDataDiffusionAlgorithm(
   SurfaceDiffusion::OwnedSettings settings)
   : Superclass(std::move(settings))
@@ -29,3 +30,4 @@ bool vtkSurfaceDataDiffusionAlgorithm::FindFields(
   fields.Fidelity = inputs.Find(5, "FidelityArray", 1);
   return hasData;
 }
+VTK_ABI_NAMESPACE_END

@@ -30,6 +30,7 @@
 
 #include "vtkSurfaceDiffusionAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDataDiffusionAlgorithm
   : public vtkSurfaceDiffusionAlgorithm
 {
@@ -116,5 +117,6 @@ private:
   vtkSurfaceDataDiffusionAlgorithm(const vtkSurfaceDataDiffusionAlgorithm&) = delete;
   void operator=(const vtkSurfaceDataDiffusionAlgorithm&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -12,6 +12,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceDenoisingFilter);
 
 vtkSurfaceDenoisingFilter::vtkSurfaceDenoisingFilter()
@@ -36,3 +37,4 @@ bool vtkSurfaceDenoisingFilter::FindFields(
   fields.Fixed = inputs.Find(3, "FixedArray", 1);
   return true;
 }
+VTK_ABI_NAMESPACE_END

@@ -71,6 +71,7 @@
 
 #include "vtkSurfaceRunAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDenoisingFilter : public vtkSurfaceRunAlgorithm
 {
 public:
@@ -158,5 +159,6 @@ private:
   vtkSurfaceDenoisingFilter(const vtkSurfaceDenoisingFilter&) = delete;
   void operator=(const vtkSurfaceDenoisingFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -14,6 +14,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceDerivativesFilter);
 
 vtkSurfaceDerivativesFilter::vtkSurfaceDerivativesFilter()
@@ -35,3 +36,4 @@ bool vtkSurfaceDerivativesFilter::FindFields(
   fields.Mask = inputs.Find(1, "MaskArray", 1);
   return fields.Data.Values != nullptr;
 }
+VTK_ABI_NAMESPACE_END

@@ -71,6 +71,7 @@
 
 #include "vtkSurfaceRunAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDerivativesFilter : public vtkSurfaceRunAlgorithm
 {
 public:
@@ -122,5 +123,6 @@ private:
   vtkSurfaceDerivativesFilter(const vtkSurfaceDerivativesFilter&) = delete;
   void operator=(const vtkSurfaceDerivativesFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -14,6 +14,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkSurfaceDiffusionAlgorithm::vtkSurfaceDiffusionAlgorithm(OwnedSettings settings)
   : Superclass(std::move(settings))
   , KnownLength(std::make_unique<RunLength>())
@@ -101,3 +102,4 @@ int vtkSurfaceDiffusionAlgorithm::RequestData(
   SetDataTime(step * settings.DescribeModel().TimeStep, outputs);
   return result;
 }
+VTK_ABI_NAMESPACE_END

@@ -28,6 +28,7 @@ class RunLength;
 struct TimeSettings;
 }
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDiffusionAlgorithm : public vtkSurfaceModelAlgorithm
 {
 public:
@@ -162,5 +163,6 @@ private:
   /// The end of the run, which may have come before the last step.
   const std::unique_ptr<SurfaceDiffusion::RunLength> KnownLength;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -12,6 +12,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceDirectionFieldFilter);
 
 vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter()
@@ -31,3 +32,4 @@ bool vtkSurfaceDirectionFieldFilter::FindFields(
   }
   return true; // without hints, which is an error if they are needed
 }
+VTK_ABI_NAMESPACE_END

@@ -50,6 +50,7 @@
 
 #include "vtkSurfaceRunAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDirectionFieldFilter : public vtkSurfaceRunAlgorithm
 {
 public:
@@ -128,5 +129,6 @@ private:
   vtkSurfaceDirectionFieldFilter(const vtkSurfaceDirectionFieldFilter&) = delete;
   void operator=(const vtkSurfaceDirectionFieldFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -15,6 +15,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceDistanceFilter);
 
 vtkSurfaceDistanceFilter::vtkSurfaceDistanceFilter()
@@ -89,3 +90,4 @@ void vtkSurfaceDistanceFilter::PrepareOutputs(
   }
   DistanceRun::RequireSource(updated);
 }
+VTK_ABI_NAMESPACE_END

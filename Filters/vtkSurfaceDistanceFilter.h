@@ -82,6 +82,7 @@ namespace SurfaceDiffusion
 struct SourceShapes;
 }
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceDistanceFilter : public vtkSurfaceRunAlgorithm
 {
 public:
@@ -165,5 +166,6 @@ private:
   std::shared_ptr<const SurfaceDiffusion::SourceShapes> Sources;
   Problems ProblemsOfSources;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

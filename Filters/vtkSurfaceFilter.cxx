@@ -36,6 +36,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 
@@ -593,3 +594,4 @@ void vtkSurfaceFilter::PrintSelf(ostream& os, vtkIndent indent)
     os << indent << name << ": " << this->FindNumber(name.c_str()) << "\n";
   }
 }
+VTK_ABI_NAMESPACE_END

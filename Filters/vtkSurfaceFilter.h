@@ -49,6 +49,7 @@
 
 #include "vtkPolyDataAlgorithm.h"
 #include "vtkSurfaceDiffusionModule.h" // for export macro
+#include "vtkSurfaceDiffusionNamespace.h" // for VTK 9.1
 
 #include <functional> // for steps of an update
 #include <memory> // for the private part
@@ -64,6 +65,8 @@ class Settings;
 struct SurfacePiece;
 struct Warning;
 }
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkMultiProcessController;
 class vtkPolyData;
 
@@ -352,5 +355,6 @@ private:
   vtkMultiProcessController* Controller = nullptr;
   bool HasWholeSurface = false; ///< the meaning of a null Controller
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -25,6 +25,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 /// The state of vtkSurfaceFilter that its header hides.
 struct vtkSurfaceFilter::Internals
 {
@@ -89,3 +90,4 @@ private:
   vtkNew<vtkCallbackCommand> Quiet;
   vtkWeakPointer<vtkExecutive> Observed;
 };
+VTK_ABI_NAMESPACE_END

@@ -15,6 +15,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceInterpolationFilter);
 
 vtkSurfaceInterpolationFilter::vtkSurfaceInterpolationFilter()
@@ -76,3 +77,4 @@ void vtkSurfaceInterpolationFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "PointValueArray: " << this->PointValueArray << "\n";
   os << indent << "PointWeightArray: " << this->PointWeightArray << "\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -107,6 +107,7 @@ namespace SurfaceDiffusion
 struct PointSamples;
 }
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceInterpolationFilter : public vtkSurfaceModelAlgorithm
 {
 public:
@@ -245,5 +246,6 @@ private:
   std::shared_ptr<const SurfaceDiffusion::PointSamples> Samples; ///< likewise
   Problems ProblemsOfPoints; ///< likewise
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

@@ -32,6 +32,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 namespace
 {
 
@@ -461,3 +462,4 @@ void vtkSurfaceModelAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "OutputPrecision: " << this->GetOutputPrecisionAsString() << "\n";
 }
+VTK_ABI_NAMESPACE_END

@@ -102,6 +102,8 @@ struct BlockInput;
 struct InputFields;
 struct RunSettings;
 }
+
+VTK_ABI_NAMESPACE_BEGIN
 class vtkPolyData;
 
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceModelAlgorithm : public vtkSurfaceFilter
@@ -245,5 +247,6 @@ private:
   std::vector<SurfaceDiffusion::BlockInput> MakeInputs(
     const std::vector<SurfaceDiffusion::InputFields>& surfaces);
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

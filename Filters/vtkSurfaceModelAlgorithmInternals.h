@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 /// The state of vtkSurfaceModelAlgorithm that its header hides.
 struct vtkSurfaceModelAlgorithm::UpdateState
 {
@@ -61,3 +62,4 @@ struct vtkSurfaceModelAlgorithm::UpdateState
   vtkSmartPointer<vtkTable> Table; ///< null until the update has succeeded, in process 0
   vtkSmartPointer<vtkPolyData> Curves;
 };
+VTK_ABI_NAMESPACE_END

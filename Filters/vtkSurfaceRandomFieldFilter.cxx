@@ -14,6 +14,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceRandomFieldFilter);
 
 vtkSurfaceRandomFieldFilter::vtkSurfaceRandomFieldFilter()
@@ -31,3 +32,4 @@ bool vtkSurfaceRandomFieldFilter::FindFields(
   fields.GlobalIds = block->GetPointData()->GetGlobalIds();
   return true;
 }
+VTK_ABI_NAMESPACE_END

@@ -47,6 +47,7 @@
 
 #include "vtkSurfaceRunAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceRandomFieldFilter : public vtkSurfaceRunAlgorithm
 {
 public:
@@ -109,5 +110,6 @@ private:
   vtkSurfaceRandomFieldFilter(const vtkSurfaceRandomFieldFilter&) = delete;
   void operator=(const vtkSurfaceRandomFieldFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

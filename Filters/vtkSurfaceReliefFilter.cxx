@@ -19,6 +19,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceReliefFilter);
 
 namespace
@@ -119,3 +120,4 @@ void vtkSurfaceReliefFilter::PrepareOutputs(
     TurnPolygons(surfaces[b].Output, run, runs.CellsOf(b));
   }
 }
+VTK_ABI_NAMESPACE_END

@@ -58,6 +58,7 @@ namespace SurfaceDiffusion
 struct ReliefSettings;
 }
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceReliefFilter : public vtkSurfaceRunAlgorithm
 {
 public:
@@ -157,5 +158,6 @@ private:
 
   SurfaceDiffusion::ReliefSettings& GetReliefSettings() const;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

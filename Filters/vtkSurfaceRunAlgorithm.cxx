@@ -13,6 +13,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 struct vtkSurfaceRunAlgorithm::UpdateState
 {
   SurfaceRuns Runs;
@@ -122,3 +123,4 @@ void vtkSurfaceRunAlgorithm::ReleaseCache()
   this->Superclass::ReleaseCache();
   this->State->Runs.Clear();
 }
+VTK_ABI_NAMESPACE_END

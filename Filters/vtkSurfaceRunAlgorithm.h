@@ -28,6 +28,7 @@ struct InputFields;
 class SurfaceRuns;
 }
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceRunAlgorithm : public vtkSurfaceFilter
 {
 public:
@@ -65,5 +66,6 @@ private:
   void FindAllFields(const std::vector<SurfaceBlock>& blocks, std::vector<SurfaceBlock>& surfaces,
     std::vector<SurfaceDiffusion::InputFields>& fields, Problems& problems);
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

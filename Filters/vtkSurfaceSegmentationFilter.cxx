@@ -15,6 +15,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkSurfaceSegmentationFilter);
 
 namespace
@@ -135,3 +136,4 @@ void vtkSurfaceSegmentationFilter::PrintSelf(ostream& os, vtkIndent indent)
        << value << "\n";
   }
 }
+VTK_ABI_NAMESPACE_END

@@ -83,6 +83,7 @@
 #include <map> // for means
 #include <utility> // for means
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkSurfaceSegmentationFilter : public vtkSurfaceModelAlgorithm
 {
 public:
@@ -188,5 +189,6 @@ private:
 
   std::map<std::pair<int, int>, double> Means; ///< by region and component
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

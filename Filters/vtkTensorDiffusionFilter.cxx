@@ -9,9 +9,11 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkTensorDiffusionFilter);
 
 vtkTensorDiffusionFilter::vtkTensorDiffusionFilter()
   : Superclass(OwnedSettings::Make<TensorDiffusionSettings>())
 {
 }
+VTK_ABI_NAMESPACE_END

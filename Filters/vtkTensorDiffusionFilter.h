@@ -64,6 +64,7 @@
 
 #include "vtkSurfaceDataDiffusionAlgorithm.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkTensorDiffusionFilter : public vtkSurfaceDataDiffusionAlgorithm
 {
 public:
@@ -154,5 +155,6 @@ private:
   vtkTensorDiffusionFilter(const vtkTensorDiffusionFilter&) = delete;
   void operator=(const vtkTensorDiffusionFilter&) = delete;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

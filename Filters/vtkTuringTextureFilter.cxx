@@ -16,6 +16,7 @@
 
 using namespace SurfaceDiffusion;
 
+VTK_ABI_NAMESPACE_BEGIN
 vtkStandardNewMacro(vtkTuringTextureFilter);
 
 vtkTuringTextureFilter::vtkTuringTextureFilter()
@@ -122,3 +123,4 @@ TextureSettings& vtkTuringTextureFilter::GetTextureSettings() const
 {
   return static_cast<TextureSettings&>(this->GetSettings());
 }
+VTK_ABI_NAMESPACE_END

@@ -71,6 +71,7 @@ namespace SurfaceDiffusion
 struct TextureSettings;
 }
 
+VTK_ABI_NAMESPACE_BEGIN
 class VTKSURFACEDIFFUSION_EXPORT vtkTuringTextureFilter : public vtkSurfaceDiffusionAlgorithm
 {
 public:
@@ -332,5 +333,6 @@ private:
 
   SurfaceDiffusion::TextureSettings& GetTextureSettings() const;
 };
+VTK_ABI_NAMESPACE_END
 
 #endif

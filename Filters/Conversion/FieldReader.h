@@ -5,6 +5,7 @@
 #include "Conversion/TriangleCells.h"
 #include "Run/Fields.h"
 #include "Run/Fingerprint.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -14,8 +15,10 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -3,13 +3,16 @@
 #pragma once
 
 #include "Conversion/FieldReader.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkAlgorithm;
 class vtkDataArray;
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

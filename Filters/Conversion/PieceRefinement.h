@@ -6,6 +6,7 @@
 #include "Core/Foundation/Types.h"
 #include "Distributed/SurfacePieces.h"
 #include "Run/Fingerprint.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include "vtkSmartPointer.h"
 
@@ -13,9 +14,11 @@
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkCellArray;
 class vtkPoints;
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

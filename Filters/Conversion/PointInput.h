@@ -5,15 +5,18 @@
 #include "Run/Fingerprint.h"
 #include "Run/PointSamples.h"
 #include "Run/Settings.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include <memory>
 #include <string>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
 class vtkMultiProcessController;
 class vtkPointSet;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -5,16 +5,19 @@
 #include "Conversion/FieldReader.h"
 #include "Run/History.h"
 #include "Run/Outputs.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include "vtkSmartPointer.h"
 
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
 class vtkPoints;
 class vtkPolyData;
 class vtkTable;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -5,11 +5,14 @@
 #include "Run/DistanceSources.h"
 #include "Run/Fingerprint.h"
 #include "Run/Settings.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include <memory>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObject;
 class vtkMultiProcessController;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -5,11 +5,14 @@
 #include "Conversion/TriangleCells.h"
 #include "Run/Fingerprint.h"
 #include "Run/Surface.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include "vtkType.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

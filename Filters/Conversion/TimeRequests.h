@@ -3,12 +3,15 @@
 #pragma once
 
 #include "Run/RunSettings.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include <optional>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkInformation;
 class vtkInformationVector;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

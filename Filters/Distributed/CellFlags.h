@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "vtkSurfaceDiffusionNamespace.h"
+
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataSet;
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -3,9 +3,12 @@
 #pragma once
 
 #include "Run/Fingerprint.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkCellArray;
 class vtkDataArray;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -6,13 +6,16 @@
 #include "Distributed/PointIdentity.h"
 #include "Distributed/Processes.h"
 #include "Run/Surface.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include <map>
 #include <memory>
 #include <utility>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -5,6 +5,7 @@
 #include "Core/Surface/PointMatching.h"
 #include "Distributed/Processes.h"
 #include "Distributed/SurfacePieces.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkIdTypeArray.h"
@@ -13,7 +14,9 @@
 
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataArray;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

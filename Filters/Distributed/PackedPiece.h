@@ -4,12 +4,15 @@
 
 #include "Distributed/PointIdentity.h"
 #include "Run/Fingerprint.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkAlgorithm;
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -3,12 +3,15 @@
 #pragma once
 
 #include "Distributed/SurfacePieces.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkAlgorithm;
 class vtkDataArray;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

@@ -6,14 +6,17 @@
 #include "Distributed/PointIdentity.h"
 #include "Distributed/Processes.h"
 #include "Run/Run.h"
+#include "vtkSurfaceDiffusionNamespace.h"
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataSetAttributes;
 class vtkMultiProcessController;
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {

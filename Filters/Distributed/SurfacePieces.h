@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "vtkSurfaceDiffusionNamespace.h"
+
 #include "vtkType.h"
 
 #include <string>
 #include <vector>
 
+VTK_ABI_NAMESPACE_BEGIN
 class vtkDataObject;
 class vtkInformation;
 class vtkInformationVector;
 class vtkMultiProcessController;
 class vtkPolyData;
+VTK_ABI_NAMESPACE_END
 
 namespace SurfaceDiffusion
 {
