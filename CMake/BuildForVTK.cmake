@@ -49,6 +49,7 @@ if (SURFACEDIFFUSION_PYPI_VTK AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
     add_compile_definitions(_GLIBCXX_USE_CXX11_ABI=0)
   endif ()
 endif ()
+add_subdirectory(Filters/Core) # with the same interface
 
 include(CMakeDependentOption)
 cmake_dependent_option(SURFACEDIFFUSION_BUILD_PLUGIN "Build the ParaView plugin" ON
