@@ -10,7 +10,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkFVMHeatFilter);
+vtkObjectFactoryNewMacro(vtkFVMHeatFilter);
 
 vtkFVMHeatFilter::vtkFVMHeatFilter()
   : Superclass(OwnedSettings::Make<HeatSettings>())

@@ -25,7 +25,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkHarmonicMapFilter);
+vtkObjectFactoryNewMacro(vtkHarmonicMapFilter);
 
 namespace
 {

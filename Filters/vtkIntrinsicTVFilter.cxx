@@ -10,7 +10,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkIntrinsicTVFilter);
+vtkObjectFactoryNewMacro(vtkIntrinsicTVFilter);
 
 vtkIntrinsicTVFilter::vtkIntrinsicTVFilter()
   : Superclass(OwnedSettings::Make<TotalVariationSettings>())

@@ -10,7 +10,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkMumfordShahFilter);
+vtkObjectFactoryNewMacro(vtkMumfordShahFilter);
 
 vtkMumfordShahFilter::vtkMumfordShahFilter()
   : Superclass(OwnedSettings::Make<MumfordShahSettings>())

@@ -13,7 +13,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceCurvatureFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceCurvatureFilter);
 
 vtkSurfaceCurvatureFilter::vtkSurfaceCurvatureFilter()
   : Superclass(OwnedSettings::Make<CurvatureSettings>(), SurfaceRuns::Of<CurvatureRun>())

@@ -13,7 +13,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceDenoisingFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceDenoisingFilter);
 
 vtkSurfaceDenoisingFilter::vtkSurfaceDenoisingFilter()
   : Superclass(

@@ -15,7 +15,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceDerivativesFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceDerivativesFilter);
 
 vtkSurfaceDerivativesFilter::vtkSurfaceDerivativesFilter()
   : Superclass(OwnedSettings::Make<DerivativesSettings>(),

@@ -13,7 +13,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceDirectionFieldFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceDirectionFieldFilter);
 
 vtkSurfaceDirectionFieldFilter::vtkSurfaceDirectionFieldFilter()
   : Superclass(OwnedSettings::Make<DirectionFieldSettings>(),

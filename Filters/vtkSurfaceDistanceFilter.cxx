@@ -16,7 +16,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceDistanceFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceDistanceFilter);
 
 vtkSurfaceDistanceFilter::vtkSurfaceDistanceFilter()
   : Superclass(OwnedSettings::Make<DistanceSettings>(), SurfaceRuns::Of<DistanceRun>())

@@ -16,7 +16,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceInterpolationFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceInterpolationFilter);
 
 vtkSurfaceInterpolationFilter::vtkSurfaceInterpolationFilter()
   : Superclass(OwnedSettings::Make<InterpolationSettings>())

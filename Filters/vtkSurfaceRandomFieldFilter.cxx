@@ -15,7 +15,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceRandomFieldFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceRandomFieldFilter);
 
 vtkSurfaceRandomFieldFilter::vtkSurfaceRandomFieldFilter()
   : Superclass(OwnedSettings::Make<RandomFieldSettings>(), SurfaceRuns::Of<RandomFieldRun>())

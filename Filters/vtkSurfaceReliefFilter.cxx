@@ -20,7 +20,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceReliefFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceReliefFilter);
 
 namespace
 {

@@ -16,7 +16,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkSurfaceSegmentationFilter);
+vtkObjectFactoryNewMacro(vtkSurfaceSegmentationFilter);
 
 namespace
 {

@@ -10,7 +10,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkTensorDiffusionFilter);
+vtkObjectFactoryNewMacro(vtkTensorDiffusionFilter);
 
 vtkTensorDiffusionFilter::vtkTensorDiffusionFilter()
   : Superclass(OwnedSettings::Make<TensorDiffusionSettings>())

@@ -17,7 +17,7 @@
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
-vtkStandardNewMacro(vtkTuringTextureFilter);
+vtkObjectFactoryNewMacro(vtkTuringTextureFilter);
 
 vtkTuringTextureFilter::vtkTuringTextureFilter()
   : Superclass(OwnedSettings::Make<TextureSettings>())

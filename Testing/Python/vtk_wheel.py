@@ -24,22 +24,23 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 MESHES = ["bear", "camel", "cow", "femur", "homer", "elephant-with-holes", "knot1", "mannequin-devil",
-          "oblong", "torus_quad"]
+          "oblong", "double-torus-example"]
 
-#: Properties of each filter, with few steps, and the arrays it takes by their index
+#: Properties of each filter, with few steps, and the arrays it takes by their index. Lengths are in
+#: diagonals of the mesh.
 FILTERS = {
     "vtkFVMHeatFilter": ({"NumberOfTimeSteps": 3}, {"f": 0, "mask": 1}),
     "vtkHarmonicMapFilter": ({}, {"vectors": 0}),
     "vtkIntrinsicTVFilter": ({"NumberOfTimeSteps": 3}, {"columns": 0}),
     "vtkMumfordShahFilter": ({"NumberOfTimeSteps": 5}, {"f": 0}),
     "vtkSurfaceCurvatureFilter": ({}, {}),
-    "vtkSurfaceDenoisingFilter": ({}, {}),
+    "vtkSurfaceDenoisingFilter": ({"NoiseLevel": 1e-3}, {}),
     "vtkSurfaceDerivativesFilter": ({"Quantity": "Laplacian"}, {"f": 0}),
     "vtkSurfaceDirectionFieldFilter": ({"Method": "Smooth"}, {}),
     "vtkSurfaceDistanceFilter": ({"Method": "Eikonal"}, {"sources": 0}),
     "vtkSurfaceInterpolationFilter": ({"ComputeError": True}, {"known": 0}),
     "vtkSurfaceRandomFieldFilter": ({"NumberOfFields": 2}, {}),
-    "vtkSurfaceReliefFilter": ({}, {"f": 0}),
+    "vtkSurfaceReliefFilter": ({"Height": 0.01}, {"f": 0}),
     "vtkSurfaceSegmentationFilter": ({"NumberOfRegions": 3}, {"f": 0}),
     "vtkTensorDiffusionFilter": ({"NumberOfTimeSteps": 2}, {"columns": 0}),
     "vtkTuringTextureFilter": ({"NumberOfTimeSteps": 30, "RefineTo": 0.0}, {}),
@@ -99,16 +100,16 @@ def write_cases(folder):
         points, faces, sizes = read_off(Path(os.environ["SURFACEDIFFUSION_MESH_DIR"], mesh + ".off"))
         random = np.random.default_rng(len(points))
         n = len(points)
-        height = np.ptp(points, axis=0).argmax()
-        scale = points[:, height] / np.ptp(points[:, height])
-        columns = np.sign(np.sin(9 * scale))[:, None] + 0.2 * random.normal(size=(n, 3))
+        diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
+        columns = np.sign(np.sin(9 * points[:, :1] / diagonal)) + 0.2 * random.normal(size=(n, 3))
         known = np.where(np.arange(n) % 11 == 3, columns[:, 0], np.nan)
         arrays = {"f": columns[:, 0].copy(), "columns": columns, "known": known, "vectors": random.normal(size=(n, 3)),
                   "mask": (np.arange(n) % 17 == 3).astype(np.uint8), "sources": (np.arange(n) % 97 == 5).astype(np.uint8)}
         for name, (properties, indices) in FILTERS.items():
             np.savez(folder / f"case{len(cases)}.npz", points=points, faces=faces, sizes=sizes,
                      **{key: arrays[key] for key in indices})
-            cases.append([name, properties, indices])
+            lengths = {key: properties[key] * diagonal for key in ("NoiseLevel", "Height") if key in properties}
+            cases.append([name, {**properties, **lengths}, indices])
     (folder / "cases.json").write_text(json.dumps(cases))
     return len(cases)
 
