@@ -85,6 +85,7 @@ vtk_module_build(
   LIBRARY_DESTINATION "${library_destination}"
   HEADERS_DESTINATION "${header_destination}"
   CMAKE_DESTINATION   "${cmake_destination}"
+  LICENSE_DESTINATION "${license_destination}"
   ${library_version}
   ENABLE_WRAPPING     ON)
 

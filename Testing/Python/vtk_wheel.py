@@ -129,7 +129,7 @@ def check_contents(wheel):
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
         metadata = archive.read(next(name for name in names if name.endswith("/METADATA"))).decode()
-    for ending in ("/vtkSurfaceDiffusion.pyi", "/py.typed", "/licenses/LICENSE", "/licenses/NOTICE"):
+    for ending in ("/vtkSurfaceDiffusion.pyi", "/py.typed", "/LICENSE", "/NOTICE"):
         assert any(name.endswith(ending) for name in names), (ending, names)
     libraries = [name for name in names if ".so" in name]
     assert len(libraries) == 2 and all("urfaceDiffusion" in name for name in libraries), libraries
