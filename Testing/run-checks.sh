@@ -2,8 +2,8 @@
 # Usage: run-checks.sh [CHECK...]
 # The checks before a release, which take hours and are not part of run-tests.sh: all tests under the
 # sanitizers, ten minutes of fuzzing, clang with libc++, bounds of round-off with other compilers, flags
-# and instructions, all meshes, other versions of VTK, and the site. Without arguments all run, also if
-# one fails. Each that passes is entered into Testing/CHECKS.md with its day and its commit.
+# and instructions, all meshes, other versions of VTK, wheels for PyPI's vtk, and the site. Without
+# arguments all run, also if one fails. Each that passes is entered into Testing/CHECKS.md with its day and its commit.
 # Logs are in build/checks. The exit code is 1 if a check has failed.
 set -eu
 cd "$(dirname "$0")/.."
@@ -92,7 +92,7 @@ run()
   xvfb-run -a -s "-screen 0 1024x768x24 -noreset" ctest --preset "$1" -j2
 }
 
-[ $# -gt 0 ] || set -- bounds fuzz libcxx libcxx-numpy sanitize sanitize-more tsan tsan-filters tsan-numpy long versions site
+[ $# -gt 0 ] || set -- bounds fuzz libcxx libcxx-numpy sanitize sanitize-more tsan tsan-filters tsan-numpy long versions vtk-wheel site
 status=0
 for check in "$@"; do
   echo "== $check"
