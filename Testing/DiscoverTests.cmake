@@ -1,7 +1,7 @@
 # Read by ctest for a GoogleTest program: one entry for each test, which runs it with all values of its
 # parameter. gtest_discover_tests() makes an entry for each value, which is twice as many processes, whose
 # starts take longer than most of these tests. An entry is skipped if all its values are, and failed if
-# one is. surfacediffusion_test_executable() sets the variables program, folder and properties.
+# one is. surfacediffusion_test_executable() sets the variables program, folder, properties and drawing.
 cmake_minimum_required(VERSION 3.22)
 if (NOT EXISTS "${program}")
   cmake_path(GET program FILENAME name)
@@ -34,4 +34,7 @@ foreach (name IN LISTS names)
     WORKING_DIRECTORY "${folder}"
     SKIP_REGULAR_EXPRESSION "\\[  PASSED  \\] 0 tests\\.\n(\\[  SKIPPED \\][^\n]*\n)+$"
     ${properties})
+  if (NOT name MATCHES "${drawing}")
+    set_tests_properties("${name}" PROPERTIES ENVIRONMENT_MODIFICATION "DISPLAY=unset:")
+  endif ()
 endforeach ()
