@@ -15,9 +15,8 @@ with one dash are taken, too: see [coming from Workbench](coming_from.md).
 Exit codes: 0 success, 1 the computation failed or was interrupted, 2 arguments or files are wrong.
 Errors are one line on standard error. An output appears complete or not at all.
 
-Commands, options and files are completed in bash after `eval "$(register-python-argcomplete
-surfacediffusion)"`, which argcomplete explains for other shells,
-too. `surfacediffusion doctor` shows what is installed, and whether results are right on this machine.
+Commands, options and files are completed in bash and zsh after `eval "$(surfacediffusion --completion bash)"`
+(`zsh`), and in fish after `surfacediffusion --completion fish | source`. `surfacediffusion doctor` shows what is installed, and whether results are right on this machine.
 
 """
 

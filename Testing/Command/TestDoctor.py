@@ -4,6 +4,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -100,6 +101,23 @@ class Completion(unittest.TestCase):
     def test_commands_and_options_are_completed(self):
         self.assertEqual(completions("surfacediffusion sm"), {"smooth"})
         self.assertEqual(completions("surfacediffusion smooth --s"), {"--sigma", "--steps", "--surface-only"})
+
+    def test_each_shell_gets_its_script(self):
+        scripts = [run("--completion", shell) for shell in ("bash", "zsh", "fish")]
+        for code, out, error in scripts:
+            self.assertEqual((code, error), (0, ""))
+            self.assertIn("surfacediffusion", out)
+        self.assertIn("complete -o", scripts[0][1])
+        self.assertIn("compdef", scripts[1][1])
+        self.assertIn("complete --command surfacediffusion", scripts[2][1])
+        if shutil.which("bash"):
+            subprocess.run(["bash", "-c", scripts[0][1] + "\ncomplete -p surfacediffusion"], check=True,
+                           stdout=subprocess.DEVNULL)
+        self.assertEqual(run("--completion", "tcsh")[0], 2)
+        with mock.patch.dict(sys.modules, {"argcomplete": None}):
+            code, _, error = run("--completion", "bash")
+        self.assertEqual(code, 2)
+        self.assertIn("pip install argcomplete", error)
 
     def test_nothing_is_said_without_argcomplete(self):
         variables = {"_ARGCOMPLETE": "1", "COMP_LINE": "surfacediffusion sm", "COMP_POINT": "19"}

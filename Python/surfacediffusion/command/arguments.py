@@ -3,6 +3,7 @@
 """The parser of the command line: which commands there are, and what holds for all of them."""
 from __future__ import annotations
 
+import argparse
 import os
 import re
 
@@ -76,11 +77,26 @@ def make_parser(hemispheres=False):
         description="Diffusion equations on surfaces, for files.",
         epilog=f"{PROGRAM} COMMAND --help shows the arguments of a command and an example.")
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {doctor.version()}")
+    parser.add_argument(
+        "--completion", action=_Completion, choices=("bash", "zsh", "fish"), metavar="SHELL",
+        help="print the script by which bash, zsh or fish completes commands, options and files, and end")
     commands = Commands(parser.add_subparsers(
         dest="command", metavar="COMMAND", required=True, parser_class=Command), hemispheres)
     for add in COMMANDS:
         add(commands)
     return parser
+
+
+class _Completion(argparse.Action):
+    """Prints the script that a shell runs at its start."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        try:
+            import argcomplete
+        except ImportError:
+            parser.error("--completion needs argcomplete, which is not installed; pip install argcomplete")
+        print(argcomplete.shellcode([PROGRAM], shell=values))
+        parser.exit()
 
 
 def complete(parser):
