@@ -35,8 +35,8 @@ def call(*command, cwd=ROOT, **environment):
 def version():
     """That of CMakeLists.txt, which has to be the first one in CHANGELOG.md."""
     number = re.search(r"^  VERSION (\d+\.\d+\.\d+)$", (ROOT / "CMakeLists.txt").read_text(), re.M).group(1)
-    heading = re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(), re.M).group(1)
-    if heading != number:
+    heading = re.search(r"^## (.+)", (ROOT / "CHANGELOG.md").read_text(), re.M).group(1)
+    if heading.split(",")[0] != number:  # 1.0.0, 2026-01-31
         print(f"warning: the first heading of CHANGELOG.md is {heading}, and the version {number}")
     return number
 

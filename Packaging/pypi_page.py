@@ -39,11 +39,12 @@ def urls_for_index(address):
 def dynamic_metadata(field, settings=None):
     if settings:
         raise ValueError("no settings: the address is that of tool.surfacediffusion")
-    project = tomllib.loads(Path("pyproject.toml").read_text(encoding="utf-8"))
+    root = Path(__file__).resolve().parent.parent  # also for Packaging/VTK
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
     address = project["tool"]["surfacediffusion"]["address"]
     if field == "urls":
         return urls_for_index(address)
     if field == "readme":
         return {"content-type": "text/markdown",
-                "text": readme_for_index(Path("README.md").read_text(encoding="utf-8"), address)}
+                "text": readme_for_index((root / "README.md").read_text(encoding="utf-8"), address)}
     raise ValueError(f"{field}; allowed: readme or urls")

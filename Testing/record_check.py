@@ -39,7 +39,7 @@ def result_of(log):
 
 def stale_checks(names, page, changelog):
     """The checks that have not passed since the last release of the changelog; none before the first."""
-    releases = re.findall(r"^## (\d+)\.(\d+)\.(\d+)", changelog, re.MULTILINE)  # the newest is first
+    releases = re.findall(r"^## (\d+)\.(\d+)\.(\d+)(?!\d| \(unreleased\))", changelog, re.MULTILINE)  # newest first
     last = tuple(map(int, releases[0])) if releases else (-1,)
     passed = {row[0]: tuple(map(int, row[4].split("."))) for row in ROW.findall(page)}
     return [name for name in names if passed.get(name, (-1,)) < last]

@@ -131,8 +131,8 @@ class Checks(unittest.TestCase):
                               for name, version in (("old", "0.9.12"), ("new", "1.2.0")))
         names = ["new", "none", "old"]
         for changelog, stale in (("# Changelog\n\n## 1.0.0\n\n## 0.9.0\n", ["none", "old"]),
-                                 ("## Unreleased\n\n## 1.10.0\n", names),
-                                 ("## Unreleased\n", [])):
+                                 ("## 2.0.10 (unreleased)\n\n## 1.10.0\n", names),
+                                 ("## 1.0.10 (unreleased)\n", [])):
             self.assertEqual(stale_checks(names, page, changelog), stale)
 
     def test_the_counts_of_ctest_of_the_fuzzer_and_of_the_site_are_read(self):

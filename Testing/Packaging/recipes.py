@@ -105,11 +105,10 @@ def check_page():
         name = prepare_metadata_for_build_wheel(str(target))
         metadata = (target / name / "METADATA").read_text()
         assert f"\nVersion: {version.group(1)}\n" in metadata, metadata[:600]
-        if not package:
-            _, page = metadata.split("\n\n", 1)
-            assert len(page) > 6000 and not relative.search(page), relative.findall(page)
-            assert "License: BSD-3-Clause\n" in metadata
-            assert ("Project-URL: " in metadata) == bool(re.search('^address = "."', project, re.M))
+        _, page = metadata.split("\n\n", 1)
+        assert len(page) > 6000 and not relative.search(page), relative.findall(page)
+        assert "License: BSD-3-Clause\n" in metadata
+        assert ("Project-URL: " in metadata) == bool(re.search('^address = "."', project, re.M))
     with_address = folder / "with_address"
     (with_address / "Packaging").mkdir(parents=True)
     for name in ("README.md", "CMakeLists.txt", "LICENSE", "Packaging/pypi_page.py"):
@@ -117,6 +116,8 @@ def check_page():
     (with_address / "pyproject.toml").write_text(
         re.sub('^address = ".*?"', 'address = "https://x.example/y"', project, flags=re.M))
     os.chdir(with_address)
+    del sys.modules["pypi_page"]  # which reads the files of its repository
+    sys.path.remove(str(source / "Packaging"))
     metadata = Path(prepare_metadata_for_build_wheel("."), "METADATA").read_text()
     links = dict(re.findall(r"^Project-URL: (\w+), (\S+)$", metadata, re.M))
     assert links == {"Repository": "https://x.example/y", "Issues": "https://x.example/y/issues",
