@@ -127,7 +127,15 @@ def check_page():
     assert citation["version"] == version.group(1), citation["version"]
 
 
+def check_versions_of_wheels():
+    """build_wheel.py refuses a vtk without an SDK before it fetches anything."""
+    run = subprocess.run([sys.executable, source / "Packaging/VTK/build_wheel.py", "9.1.0", "--out", folder],
+                         capture_output=True, text=True)
+    assert run.returncode == 1 and "VERSION is 9.1.0; allowed: 9.5, 9.7" in run.stderr, run
+
+
 load_build_backend()
+check_versions_of_wheels()
 check_dependencies()
 check_page()
 configure(source, "conda", conda_options(source))
