@@ -38,13 +38,13 @@ def stripes():
 
 
 def make_plotter(flow, array):
-    """A plotter of the output of the filter, with a slider through its times."""
+    """A plotter of the output of the filter, and its slider through the times."""
     plotter = pyvista.Plotter(off_screen=True, window_size=(500, 500))
     actor = plotter.add_mesh(flow, scalars=array, clim=(-1.5, 1.5), cmap="viridis")
     # What the plotter has put behind the filter asks for the time.
     last = actor.mapper.GetInputAlgorithm()
-    plotter.add_slider_widget(last.UpdateTimeStep, (0, flow.GetNumberOfTimeSteps()), title="time")
-    return plotter
+    slider = plotter.add_slider_widget(last.UpdateTimeStep, (0, flow.GetNumberOfTimeSteps()), title="time")
+    return plotter, slider
 
 
 def main():
@@ -55,11 +55,10 @@ def main():
     flow.SetInputDataObject(mesh)
     flow.SetInputArrayToProcess(0, 0, 0, 0, array)
     flow.GenerateTimeStepsOn()
-    plotter = make_plotter(flow, array + "TV")
+    plotter, slider = make_plotter(flow, array + "TV")
     plotter.show(auto_close=False)
     pictures = []
     for time in (0, 1, 10):  # what the mouse does in a window
-        slider = plotter.slider_widgets[0]
         slider.GetRepresentation().SetValue(time)
         slider.InvokeEvent("EndInteractionEvent")
         plotter.render()

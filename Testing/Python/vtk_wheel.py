@@ -7,7 +7,7 @@ PyVista of the day: results have the bits of the build for this Python's VTK.
     vtk_wheel.py FOLDER VERSION...
 
 The module of the build for this Python's VTK is on PYTHONPATH, and meshes are in
-SURFACEDIFFUSION_MESH_DIR. Needs a network."""
+SURFACEDIFFUSION_MESH_DIR. Needs a network and a display."""
 
 import hashlib
 import json
@@ -167,6 +167,7 @@ def main(folder, versions):
         print(f"vtk {version}: {len(found)} arrays of {number} runs have the same bits", flush=True)
         for script in ("TestModule", "TestProperties", "TestPipeline"):
             call(python, HERE / f"{script}.py")
+        call(python, ROOT / "Examples/Python/pyvista_pipeline.py")
     for version, other in zip(versions, versions[1:] + versions[:1]):
         if other != version:  # its wheel with the other vtk
             (wheel,) = (folder / version).glob("*.whl")
