@@ -60,7 +60,7 @@ def _properties(folder):
     for path in sorted(folder.glob("*-module-properties.cmake")):
         for line in path.read_text().splitlines():
             match = re.match(r'set_property\(TARGET "VTK::(\w+)" PROPERTY "INTERFACE_vtk_module_(\w+)" "(.*)"', line)
-            if not match or match[2] == "kit": # a wheel has a library for each module
+            if not match or match[2] == "kit":  # a wheel has a library for each module
                 continue
             line = line.replace('"cvista"', '"vtkmodules"')
             lines.setdefault(match[1], []).append(line)
@@ -86,7 +86,7 @@ def _wrapper(sdk):
     programs = sorted(sdk.glob("bin/vtkWrap*-cvista"))
     if programs:
         for program in programs:
-            program.chmod(0o755) # which zipfile does not keep
+            program.chmod(0o755)  # which zipfile does not keep
         return programs, next(sdk.glob("*.data/headers/cmake"))
     for program in sorted(Path("/usr/bin").glob("vtkWrapPython-*")):
         suffix = program.name[len("vtkWrapPython"):]
