@@ -5,13 +5,6 @@
 /** The error of a run that the user, or a newer file, has ended. */
 class Cancelled extends Error {}
 
-/** The engine's WebAssembly, out of the text in which it was loaded. */
-async function compileEngine() {
-  const packed = Uint8Array.from(atob(ENGINE_WASM), (c) => c.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(stream).arrayBuffer());
-}
-
 /**
  * The engine in its worker. A run cannot be interrupted from outside: cancel() ends the worker and starts
  * another one, which opens the same files again.
@@ -22,7 +15,7 @@ class EngineClient {
     const text = `"use strict";var _scriptDir;(${surfaceDiffusionWorker})(${SurfaceDiffusionEngine});`;
     this.script = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
     this.files = []; // [{name, bytes}]: the surface, then files of values
-    this.code = compileEngine();
+    this.code = unpack(ENGINE_WASM).then((code) => WebAssembly.compile(code));
     this.start();
   }
 

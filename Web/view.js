@@ -186,6 +186,9 @@ class SurfaceView {
     }
     this.onPick = onPick;
     this.background = [1, 1, 1];
+    this.bars = 60; // pixels above the surface, for titles and colour bars
+    this.columns = 0; // sides in a row; 0: as many as there is room for
+    this.home = null; // [from, up] of the first view; null: by the shape of the surface
     this.sides = []; // {points, normals, values, ...}: what is seen from left to right
     this.marks = [];
     this.turn = null;
@@ -260,15 +263,15 @@ class SurfaceView {
   }
 
   /**
-   * Shows these sides: {points (3n), triangles (3m), values (see colours.js; null: none)}. The camera
-   * stays unless frame is true.
+   * Shows these sides: {points (3n), triangles (3m), values (see colours.js; null: none)}. frame: true, or
+   * the points that the camera shows; otherwise it stays.
    */
   show(sides, frame = false) {
     const old = this.sides;
     this.sides = sides.map((side) => ({ ...side }));
     const first = this.sides[0];
     if (frame || !this.turn) {
-      this.setFrame(first.points);
+      this.setFrame(frame && frame !== true ? frame : first.points);
     } else if (old.length !== this.sides.length && this.distance === this.fitted) {
       this.fit();
     }
@@ -328,6 +331,10 @@ class SurfaceView {
 
   resetCamera() {
     if (!this.framed) { return; }
+    if (this.home) {
+      this.lookFrom(...this.home);
+      return;
+    }
     const extent = [0, 1, 2].map((axis) => {
       let largest = 0;
       for (let i = axis; i < this.framed.length; i += 3) {
@@ -352,7 +359,7 @@ class SurfaceView {
 
   /** Moves the camera so that the framed points fill the view, with a margin. */
   fit() {
-    const { width, height } = this.viewport(0), bars = 60 * (window.devicePixelRatio || 1);
+    const { width, height } = this.viewport(0), bars = this.bars * (window.devicePixelRatio || 1);
     const aspect = width / Math.max(height, 1), points = this.framed, extent = [[9, -9], [9, -9]];
     const free = Math.max(0.5, 1 - bars / Math.max(height, 1)); // below the colour bars
     const step = 3 * Math.max(1, Math.trunc(points.length / 300000));
@@ -380,9 +387,9 @@ class SurfaceView {
   viewport(i) {
     const count = Math.max(1, this.sides.length), { width, height } = this.canvas;
     // Side by side, or one above the other where the page is narrow.
-    const across = width >= 0.9 * height || count === 1;
-    const w = across ? Math.floor(width / count) : width, h = across ? height : Math.floor(height / count);
-    return { x: across ? i * w : 0, y: across ? 0 : (count - 1 - i) * h, width: w, height: h };
+    const columns = this.columns || (width >= 0.9 * height ? count : 1), rows = Math.ceil(count / columns);
+    const w = Math.floor(width / columns), h = Math.floor(height / rows);
+    return { x: (i % columns) * w, y: (rows - 1 - Math.floor(i / columns)) * h, width: w, height: h };
   }
 
   matrix(viewport) {

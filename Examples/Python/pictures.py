@@ -197,7 +197,7 @@ def enlarge(renderer, panel, scale):
 
 
 def save_picture(path, panels, columns, panel_size):
-    """Writes a PNG file, and an HTML file of the same name if there is a viewer for scenes."""
+    """Writes a PNG file, and a scene of the same name as an HTML file."""
     save_scene(Path(path).with_suffix(".html"), panels, columns, Path(path).stem.replace("_", " "))
     rows = -(-len(panels) // columns)
     window = vtkRenderWindow()

@@ -4,7 +4,6 @@
 in the environment every one, is opened from its file and turned with the mouse. Arguments: the folder
 of the programs, and the folder of the scenes."""
 import contextlib
-import importlib.util
 import os
 import sys
 import tempfile
@@ -12,10 +11,6 @@ import unittest
 from pathlib import Path
 
 from browser import PATIENCE, difference, drag, open_browser, picture_of, wait_for
-
-if importlib.util.find_spec("trame_vtk") is None:  # its file of the viewer is read, nothing is imported
-    print("skipped: trame-vtk is not there (.ci/fetch-test-data brings it)")
-    sys.exit(77)
 
 import numpy as np
 from selenium.webdriver.common.by import By

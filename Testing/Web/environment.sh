@@ -1,7 +1,7 @@
 #!/bin/sh
 # Usage: environment.sh NUMPY FOLDER WHEELS
 # Makes a virtual environment FOLDER/environment that also finds the packages of the environment NUMPY,
-# and installs Selenium and the viewer of scenes from WHEELS/web into it, without a network.
+# and installs Selenium from WHEELS/web into it, without a network.
 set -eu
 numpy=$1
 folder=$2
@@ -15,11 +15,6 @@ if [ ! -d "$wheels/web" ]; then
   echo "no wheels in $wheels/web (.ci/fetch-test-data): tests of pages are skipped"
   exit 0
 fi
-install()
-{
-  PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 \
-    "$numpy/bin/pip" --python "$folder/environment/bin/python" install --quiet --no-index --no-compile \
-    --find-links "$wheels/web" --find-links "$wheels/numpy" "$@"
-}
-install selenium
-install --no-deps trame-vtk
+PIP_CONFIG_FILE=/dev/null PIP_DISABLE_PIP_VERSION_CHECK=1 \
+  "$numpy/bin/pip" --python "$folder/environment/bin/python" install --quiet --no-index --no-compile \
+  --find-links "$wheels/web" --find-links "$wheels/numpy" selenium
