@@ -70,6 +70,7 @@ void Engine::AddValues(Files::SurfaceFile file)
   {
     throw std::runtime_error("the file has values and no surface; open its surface first");
   }
+  Files::Spread(file, this->File.NumberOfPoints());
   const std::size_t places = file.NumberOfPoints();
   if (places > 0 && places != this->File.NumberOfPoints())
   {
@@ -216,10 +217,6 @@ std::string Engine::Run(
   std::vector<std::string> others = WordsOf(model->Inputs);
   others.insert(others.end(),
     { "array", "association", model->Data, "refine_to", "maximum_number_of_triangles" });
-  if (std::string(model->Inputs).find("seeds") != std::string::npos)
-  {
-    others.emplace_back("terms");
-  }
   AssignSettings(*model, *settings, given, others);
   const bool isTexture = dynamic_cast<const TextureSettings*>(settings.get()) != nullptr;
   double reached = 0.0;

@@ -8,7 +8,7 @@
 /// The first byte selects the file name, on which the choice of the format depends for some files.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t count)
 {
-  const char* const names[] = { "a", "a.stl", "a.vtp", "a.csv", "lh.thickness", "a.gz" };
+  const char* const names[] = { "a", "a.stl", "a.vtp", "a.csv", "lh.thickness", "a.gz", "a.annot" };
   if (count == 0)
   {
     return 0;

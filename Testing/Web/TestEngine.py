@@ -270,6 +270,14 @@ def text_of(points, polygons, kind):
     return ("\n".join([f"OFF\n{len(rows)} {len(faces)} 0", *rows, *faces]) + "\n").encode()
 
 
+def rounded_stl_of(points, faces):
+    """A binary STL file whose corners are rounded apart."""
+    triangles = np.zeros(len(faces), [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    corners = np.asarray(points)[faces]
+    triangles["corners"] = corners + np.random.default_rng(2).normal(scale=3e-6, size=corners.shape)
+    return bytes(80) + len(faces).to_bytes(4, "little") + triangles.tobytes()
+
+
 def archive_of(points, faces):
     vertices = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in points.tolist())
     triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces.tolist())
@@ -298,6 +306,7 @@ class Files(EngineTest):
         cls.mixed = mixed
         cls.files = {
             "text.stl": bytes_of(mesh, "a.stl", binary=False), "binary.stl": bytes_of(mesh, "a.stl"),
+            "rounded.stl": rounded_stl_of(points, faces),
             "text.ply": bytes_of(mesh, "a.ply", binary=False), "binary.ply": bytes_of(mesh, "a.ply"),
             "mixed.ply": bytes_of(mixed, "a.ply"),
             "a.obj": text_of(points, faces, "obj"), "mixed.obj": text_of(corners, quads, "obj"),
@@ -367,6 +376,47 @@ class Files(EngineTest):
                 np.testing.assert_array_equal(self.engine.array(word, "point")[:, 0], values)
         with self.assertRaisesRegex(EngineError, "allowed: 642"):
             self.engine.open("b.csv", b"1\n2\n3\n")
+
+    def test_values_at_some_points_and_regions_follow_a_surface(self):
+        count, inside = self.mesh.n_points, np.array([7, 3, 600])
+        self.engine.open("lh.white", self.files["lh.white"])
+        label = "#!ascii label, from subject x\n3\n" + "".join(f"{i} 0.5 1 2 {i / 4}\n" for i in inside)
+        regions = np.arange(count) % 3
+        with tempfile.TemporaryDirectory() as folder:
+            nibabel.freesurfer.write_annot(f"{folder}/a", regions, np.array(
+                [[255, 0, 0, 0], [0, 9, 0, 0], [5, 5, 200, 0]]), ["a", "b", "c"], fill_ctab=True)
+            annotation = Path(folder, "a").read_bytes()
+        some = gifti_of([("NIFTI_INTENT_NODE_INDEX", "", inside), ("NIFTI_INTENT_SHAPE", "depth", inside / 8)],
+                        "B64GZ")
+        marks, depths = np.zeros(count), np.full((2, count), np.nan)
+        marks[inside], depths[0, inside], depths[1, inside] = 1, inside / 4, inside / 8
+        for name, data, arrays in [
+                ("lh.cortex.label", label.encode(), {"cortex": marks, "cortex value": depths[0]}),
+                ("lh.aparc.annot", annotation, {"aparc": regions}), ("a.func.gii", some, {"depth": depths[1]})]:
+            with self.subTest(name):
+                self.engine.open(name, data)
+                for array, expected in arrays.items():
+                    np.testing.assert_array_equal(self.engine.array(array, "point")[:, 0], expected)
+        with self.assertRaisesRegex(EngineError, "point 642; allowed: 0 to 642 - 1"):
+            self.engine.open("lh.b.label", b"#!ascii\n1\n642 0 0 0 0\n")
+
+    def test_texts_of_freesurfer_and_files_in_pieces_are_surfaces(self):
+        self.engine.open("lh.white.asc", b"#!ascii version of lh.white\n3 1\n" + b"0 0 0 0\n0 1 0 0\n2 0.5 0 0\n0 2 1 0\n")
+        self.assertEqual(self.engine.points().tolist(), [[0, 0, 0], [0, 1, 0], [2, 0.5, 0]])
+        self.assertEqual(self.engine.triangles().tolist(), [[0, 2, 1]])
+        piece = """<Piece NumberOfPoints="3" NumberOfPolys="1"><PointData>
+            <DataArray type="Float64" Name="f" format="ascii">{0} 1 2</DataArray>{1}</PointData>
+            <Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">{0} 0 0 1 0 0 0 1 0</DataArray></Points>
+            <Polys><DataArray type="Int32" Name="connectivity" format="ascii">0 1 2</DataArray>
+            <DataArray type="Int32" Name="offsets" format="ascii">3</DataArray></Polys></Piece>"""
+        more = '<DataArray type="Float64" Name="g" format="ascii">1 1 1</DataArray>'
+        found = self.engine.open("a.vtp", ('<VTKFile type="PolyData"><PolyData>' + piece.format(5, "")
+                                           + piece.format(6, more) + "</PolyData></VTKFile>").encode())
+        self.assertEqual(self.engine.triangles().tolist(), [[0, 1, 2], [3, 4, 5]])
+        self.assertEqual(self.engine.points()[[0, 3], 0].tolist(), [5, 6])
+        self.assertEqual(self.engine.array("f", "point")[:, 0].tolist(), [5, 1, 2, 6, 1, 2])
+        self.assertEqual([array["name"] for array in found["arrays"]], ["f"])
+        self.assertIn("2 pieces", found["warnings"][0])
 
     def test_3mf_has_places_and_units(self):
         points, faces = np.asarray(self.mesh.points), self.mesh.regular_faces

@@ -86,6 +86,12 @@ double ToNumber(std::string_view word);
 std::int64_t ToInteger(std::string_view word);
 ///@}
 
+/// The number of a point; -1 for numbers that are none.
+inline std::int64_t ToIndex(double number)
+{
+  return number >= 0.0 && number < 4e9 ? static_cast<std::int64_t>(number) : -1;
+}
+
 std::string LowerCase(std::string_view text);
 
 /// The types of numbers in binary files.

@@ -52,7 +52,7 @@ std::string NameOfValues(const std::string& name)
     plain.erase(0, 3);
   }
   const std::string ending = EndingOf(plain);
-  for (const char* const known : { "csv", "txt", "tsv", "mgh", "mgz" })
+  for (const char* const known : { "csv", "txt", "tsv", "mgh", "mgz", "label", "annot", "asc" })
   {
     if (ending == known)
     {
@@ -93,6 +93,14 @@ SurfaceFile ReadByKind(const std::string& name, const Content& content)
   if (content.StartsWith("\xff\xff\xff"))
   {
     return ReadCurv(content, NameOfValues(name));
+  }
+  if (content.StartsWith("#!ascii"))
+  {
+    return ReadFreeSurferText(content, NameOfValues(name));
+  }
+  if (ending == "annot")
+  {
+    return ReadAnnotation(content, NameOfValues(name));
   }
   if (content.StartsWith("# vtk DataFile"))
   {
@@ -164,15 +172,7 @@ std::string CleanName(const std::string& name)
 /// Corners that are no points, and cells that are no polygons, end here.
 void Check(SurfaceFile& file)
 {
-  const auto points = static_cast<std::int64_t>(file.NumberOfPoints());
-  for (const std::int64_t corner : file.Corners)
-  {
-    if (corner < 0 || corner >= points)
-    {
-      throw FileError("a face refers to point " + std::to_string(corner) + "; allowed: 0 to " +
-        std::to_string(points - 1));
-    }
-  }
+  RequireCorners(file);
   for (std::size_t c = 0; c < file.NumberOfCells(); ++c)
   {
     if (file.Begin[c + 1] < file.Begin[c] + 3)
@@ -182,8 +182,12 @@ void Check(SurfaceFile& file)
   }
   if (file.NumberOfCells() == 0 && file.Arrays.empty())
   {
-    throw FileError("the surface has " + std::to_string(points) +
+    throw FileError("the surface has " + std::to_string(file.NumberOfPoints()) +
       " points and 0 faces; allowed: at least one of each");
+  }
+  if (file.NumberOfCells() > 0)
+  {
+    Spread(file, file.NumberOfPoints());
   }
   std::vector<FileArray> arrays;
   std::map<std::pair<std::string, bool>, int> counts; // of arrays of one name and place
@@ -207,6 +211,45 @@ void Check(SurfaceFile& file)
 }
 
 } // namespace
+
+void RequireCorners(const SurfaceFile& file)
+{
+  const auto points = static_cast<std::int64_t>(file.NumberOfPoints());
+  for (const std::int64_t corner : file.Corners)
+  {
+    if (corner < 0 || corner >= points)
+    {
+      throw FileError("a face refers to point " + std::to_string(corner) + "; allowed: 0 to " +
+        std::to_string(points - 1));
+    }
+  }
+}
+
+void Spread(SurfaceFile& file, std::size_t points)
+{
+  const std::vector<std::int64_t> at = std::move(file.At);
+  file.At.clear();
+  for (FileArray& array : file.Arrays)
+  {
+    if (at.empty() || array.OnCells || array.Rows() != at.size())
+    {
+      continue;
+    }
+    const std::size_t columns = array.Components;
+    std::vector<double> all(points * columns, array.Elsewhere);
+    for (std::size_t row = 0; row < at.size(); ++row)
+    {
+      if (at[row] < 0 || at[row] >= static_cast<std::int64_t>(points))
+      {
+        throw FileError("a value is at point " + std::to_string(at[row]) + "; allowed: 0 to " +
+          std::to_string(points) + " - 1");
+      }
+      std::copy_n(array.Numbers.begin() + static_cast<std::ptrdiff_t>(row * columns), columns,
+        all.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(at[row]) * columns));
+    }
+    array.Numbers = std::move(all);
+  }
+}
 
 SurfaceFile ReadFile(const std::string& name, const std::uint8_t* data, std::size_t size)
 {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <utility>
 
 namespace SurfaceDiffusion::Files
 {
@@ -34,6 +36,132 @@ SurfaceFile ReadFreeSurfer(Content content)
       file.Corners.push_back(content.Read<std::int32_t>(true));
     }
     file.Begin.push_back(file.Corners.size());
+  }
+  return file;
+}
+
+namespace
+{
+
+/// The points and triangles after the counts: a row of each, with a number after it that does not count.
+void ReadRows(Content content, std::int64_t points, std::int64_t faces, SurfaceFile& file)
+{
+  file.Kind = "FreeSurfer surface";
+  file.Unit = "mm";
+  CheckCount(points, 6, content, "points");
+  for (std::int64_t i = 0; i < points; ++i)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      file.Points.push_back(ToNumber(content.ReadWord()));
+    }
+    content.ReadWord();
+  }
+  CheckCount(faces, 6, content, "faces");
+  for (std::int64_t f = 0; f < faces; ++f)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      file.Corners.push_back(ToInteger(content.ReadWord()));
+    }
+    file.Begin.push_back(file.Corners.size());
+    content.ReadWord();
+  }
+}
+
+} // namespace
+
+SurfaceFile ReadFreeSurferText(Content content, const std::string& name)
+{
+  std::string_view line;
+  content.ReadLine(line); // "#!ascii ..."
+  content.ReadLine(line);
+  const std::vector<std::string_view> counts = SplitWords(line);
+  SurfaceFile file;
+  if (counts.size() == 2)
+  {
+    ReadRows(content, ToInteger(counts[0]), ToInteger(counts[1]), file);
+    return file;
+  }
+  file.Kind = "FreeSurfer label";
+  FileArray inside{ name };
+  inside.Elsewhere = 0.0;
+  FileArray values{ name + " value" };
+  const std::int64_t rows = counts.size() == 1 ? ToInteger(counts[0]) : 0;
+  CheckCount(rows, 10, content, "points");
+  for (std::int64_t row = 0; row < rows; ++row)
+  {
+    file.At.push_back(ToInteger(content.ReadWord()));
+    for (int k = 0; k < 3; ++k)
+    {
+      content.ReadWord();
+    }
+    values.Numbers.push_back(ToNumber(content.ReadWord()));
+  }
+  if (file.At.empty())
+  {
+    throw FileError("the label has no point; allowed: one or more");
+  }
+  inside.Numbers.assign(file.At.size(), 1.0);
+  const bool hasValues = std::any_of(values.Numbers.begin(), values.Numbers.end(),
+    [&values](double value) { return value != values.Numbers[0]; });
+  file.Arrays.push_back(std::move(inside));
+  if (hasValues)
+  {
+    file.Arrays.push_back(std::move(values));
+  }
+  return file;
+}
+
+SurfaceFile ReadAnnotation(Content content, const std::string& name)
+{
+  const std::size_t rows = CheckCount(content.Read<std::int32_t>(true), 8, content, "points");
+  std::vector<std::int32_t> points;
+  std::vector<std::int32_t> codes;
+  for (std::size_t row = 0; row < rows; ++row)
+  {
+    points.push_back(content.Read<std::int32_t>(true));
+    codes.push_back(content.Read<std::int32_t>(true));
+  }
+  // The table: a version, the number of entries, a file name, and entries of a name and a colour
+  const auto skipText = [&content]
+  { content.Take(static_cast<std::uint32_t>(content.Read<std::int32_t>(true))); };
+  std::map<std::int32_t, double> regions;
+  if (content.Left() > 4 && content.Read<std::int32_t>(true) != 0)
+  {
+    const auto version = content.Read<std::int32_t>(true);
+    const bool isOld = version > 0;
+    content.Take(isOld ? 0 : 4);
+    skipText();
+    const std::int32_t entries = isOld ? version : content.Read<std::int32_t>(true);
+    CheckCount(entries, 20, content, "regions");
+    for (std::int32_t entry = 0; entry < entries; ++entry)
+    {
+      const std::int32_t region = isOld ? entry : content.Read<std::int32_t>(true);
+      skipText();
+      std::int32_t code = 0;
+      for (int k = 0; k < 4; ++k)
+      {
+        const auto part = static_cast<std::uint32_t>(content.Read<std::int32_t>(true)) & 255U;
+        code |= k < 3 ? static_cast<std::int32_t>(part << (8 * k)) : 0;
+      }
+      regions[code] = region;
+    }
+  }
+  SurfaceFile file;
+  file.Kind = "FreeSurfer annotation";
+  FileArray array{ name };
+  for (std::size_t row = 0; row < rows; ++row)
+  {
+    const auto found = regions.find(codes[row]);
+    file.At.push_back(points[row]);
+    array.Numbers.push_back(regions.empty() ? codes[row]
+        : found == regions.end()            ? array.Elsewhere
+                                            : found->second);
+  }
+  if (rows > 0)
+  {
+    file.Arrays.push_back(std::move(array));
   }
   return file;
 }

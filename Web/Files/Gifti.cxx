@@ -5,7 +5,6 @@
 #include "Files/Inflate.h"
 #include "Files/Xml.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace SurfaceDiffusion::Files
@@ -138,7 +137,7 @@ void Take(const DataArray& array, std::vector<double> numbers, SurfaceFile& file
     {
       for (std::size_t k = 0; k < 3; ++k)
       {
-        file.Corners.push_back(static_cast<std::int64_t>(std::clamp(numbers[i + k], -1.0, 4e9)));
+        file.Corners.push_back(ToIndex(numbers[i + k]));
       }
       file.Begin.push_back(file.Corners.size());
     }
@@ -146,8 +145,11 @@ void Take(const DataArray& array, std::vector<double> numbers, SurfaceFile& file
   }
   if (array.Intent == "NIFTI_INTENT_NODE_INDEX")
   {
-    throw FileError("it has values at some points only (NIFTI_INTENT_NODE_INDEX); allowed: one for "
-                    "each point");
+    for (const double number : numbers)
+    {
+      file.At.push_back(ToIndex(number));
+    }
+    return;
   }
   if (numbers.empty())
   {

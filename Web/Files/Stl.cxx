@@ -134,6 +134,7 @@ SurfaceFile ReadStl(Content content)
     }
     file.Corners[order[i]] = static_cast<std::int64_t>(file.NumberOfPoints()) - 1;
   }
+  JoinSeams(file);
   for (std::size_t end = 3; end <= file.Corners.size(); end += 3)
   {
     file.Begin.push_back(end);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct FileArray
   std::size_t Components = 1;
   std::vector<double> Numbers = {}; ///< row after row
   bool AreBytes = false; ///< unsigned char, as colours are
+  /// At points without a value, if the file has values at some of them.
+  double Elsewhere = std::numeric_limits<double>::quiet_NaN();
 
   std::size_t Rows() const { return this->Numbers.size() / this->Components; }
 };
@@ -41,6 +44,7 @@ struct SurfaceFile
   std::vector<std::int64_t> Corners = {}; ///< of all cells
   std::vector<std::size_t> Begin = { 0 }; ///< per cell the first of its corners; the end of all
   std::vector<FileArray> Arrays = {};
+  std::vector<std::int64_t> At = {}; ///< the points that arrays have a row of; empty: all
   std::string Unit = {}; ///< of the coordinates; empty: the file does not say
   std::vector<std::string> Warnings = {};
 
@@ -52,6 +56,12 @@ struct SurfaceFile
     this->Begin.push_back(this->Corners.size());
   }
 };
+
+/// Throw FileError on corners that are no points.
+void RequireCorners(const SurfaceFile& file);
+
+/// Give arrays that have rows of some points one of each point of a surface. Throws FileError.
+void Spread(SurfaceFile& file, std::size_t points);
 
 /// Read a file by its content; the name decides where the content does not. Throws FileError.
 SurfaceFile ReadFile(const std::string& name, const std::uint8_t* data, std::size_t size);

@@ -40,9 +40,7 @@ public:
       corners.clear();
       for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(last); ++k)
       {
-        const double corner = connectivity[k];
-        corners.push_back(
-          corner >= 0.0 && corner < 4e9 ? static_cast<std::int64_t>(corner) : std::int64_t{ -1 });
+        corners.push_back(ToIndex(connectivity[k]));
       }
       add(corners);
     }

@@ -7,8 +7,7 @@
 #include "Files/Xml.h"
 
 #include <algorithm>
-#include <limits>
-#include <map>
+#include <utility>
 
 namespace SurfaceDiffusion::Files
 {
@@ -75,17 +74,24 @@ public:
   SurfaceFile Read()
   {
     this->ReadStructure();
-    VtkMesh mesh;
-    mesh.Surface.Kind = this->IsGrid ? "VTK XML grid" : "VTK XML";
+    SurfaceFile all;
+    for (const Piece& piece : this->Pieces)
+    {
+      Append(all, this->ReadPiece(piece));
+    }
+    all.Kind = this->IsGrid ? "VTK XML grid" : "VTK XML";
     if (this->Pieces.size() > 1)
     {
-      throw FileError("it has " + std::to_string(this->Pieces.size()) + " pieces; allowed: one");
+      all.Warnings.push_back("the file has " + std::to_string(this->Pieces.size()) +
+        " pieces, whose points stay apart; MergeCoincidentPoints joins those at one place");
     }
-    if (this->Pieces.empty())
-    {
-      return mesh.Surface;
-    }
-    const Piece& piece = this->Pieces[0];
+    return all;
+  }
+
+private:
+  SurfaceFile ReadPiece(const Piece& piece) const
+  {
+    VtkMesh mesh;
     for (const Described& array : piece.Arrays)
     {
       if (array.Parent == "Points")
@@ -123,7 +129,45 @@ public:
     return std::move(mesh.Surface);
   }
 
-private:
+  /// Arrays that not all pieces have become too short, and are left out later.
+  static void Append(SurfaceFile& all, SurfaceFile piece)
+  {
+    RequireCorners(piece);
+    if (all.Points.empty() && all.Arrays.empty())
+    {
+      all = std::move(piece);
+      return;
+    }
+    const auto points = static_cast<std::int64_t>(all.NumberOfPoints());
+    for (const std::int64_t corner : piece.Corners)
+    {
+      all.Corners.push_back(corner + points);
+    }
+    const std::size_t corners = all.Begin.back();
+    for (std::size_t c = 1; c < piece.Begin.size(); ++c)
+    {
+      all.Begin.push_back(corners + piece.Begin[c]);
+    }
+    all.Points.insert(all.Points.end(), piece.Points.begin(), piece.Points.end());
+    for (FileArray& array : piece.Arrays)
+    {
+      const auto known = std::find_if(all.Arrays.begin(), all.Arrays.end(),
+        [&array](const FileArray& other)
+        {
+          return other.Name == array.Name && other.OnCells == array.OnCells &&
+            other.Components == array.Components;
+        });
+      if (known == all.Arrays.end())
+      {
+        all.Arrays.push_back(std::move(array));
+      }
+      else
+      {
+        known->Numbers.insert(known->Numbers.end(), array.Numbers.begin(), array.Numbers.end());
+      }
+    }
+  }
+
   void ReadStructure()
   {
     XmlReader xml(this->All);
@@ -203,8 +247,8 @@ private:
     this->IsCompressed = !compressor.empty();
     if (this->IsCompressed && compressor != "vtkZLibDataCompressor")
     {
-      throw FileError(
-        "it is compressed by " + Quote(compressor) + "; allowed: vtkZLibDataCompressor");
+      throw FileError("it is compressed by " + Quote(compressor) +
+        "; allowed: none and vtkZLibDataCompressor, in which ParaView's dialogue saves it, too");
     }
   }
 
@@ -401,83 +445,11 @@ private:
   std::vector<Piece> Pieces;
 };
 
-/// An element with numbers in base 64.
-template <typename To, typename Numbers>
-void WriteArray(
-  Writer& writer, const std::string& attributes, const char* type, const Numbers& numbers)
-{
-  Writer bytes;
-  bytes.Binary(static_cast<std::uint64_t>(numbers.size() * sizeof(To)));
-  for (const auto number : numbers)
-  {
-    bytes.Binary(static_cast<To>(number));
-  }
-  writer.Text(
-    std::string("<DataArray type=\"") + type + "\" " + attributes + " format=\"binary\">");
-  writer.Text(EncodeBase64(bytes.Written.data(), bytes.Written.size()));
-  writer.Text("</DataArray>\n");
-}
-
-void WriteArrays(Writer& writer, const SurfaceFile& surface, bool onCells)
-{
-  const char* const place = onCells ? "CellData" : "PointData";
-  writer.Text(std::string("<") + place + ">\n");
-  for (const FileArray& array : surface.Arrays)
-  {
-    if (array.OnCells != onCells)
-    {
-      continue;
-    }
-    const std::string attributes = "Name=\"" + XmlReader::Escaped(array.Name) +
-      "\" NumberOfComponents=\"" + std::to_string(array.Components) + "\"";
-    if (array.AreBytes)
-    {
-      WriteArray<std::uint8_t>(writer, attributes, "UInt8", array.Numbers);
-    }
-    else
-    {
-      WriteArray<double>(writer, attributes, "Float64", array.Numbers);
-    }
-  }
-  writer.Text(std::string("</") + place + ">\n");
-}
-
 } // namespace
 
 SurfaceFile ReadVtkXml(Content content)
 {
   return Reader(content).Read();
-}
-
-Bytes WriteVtkXml(const SurfaceFile& surface, bool isGrid)
-{
-  const std::string cells = std::to_string(surface.NumberOfCells());
-  const std::string type = isGrid ? "UnstructuredGrid" : "PolyData";
-  Writer writer;
-  writer.Text("<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
-    "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<" + type +
-    ">\n<Piece NumberOfPoints=\"" + std::to_string(surface.NumberOfPoints()) + "\" " +
-    (isGrid ? "NumberOfCells=\"" : "NumberOfPolys=\"") + cells + "\">\n");
-  WriteArrays(writer, surface, false);
-  WriteArrays(writer, surface, true);
-  writer.Text("<Points>\n");
-  WriteArray<double>(writer, "Name=\"Points\" NumberOfComponents=\"3\"", "Float64", surface.Points);
-  writer.Text(isGrid ? "</Points>\n<Cells>\n" : "</Points>\n<Polys>\n");
-  WriteArray<std::int64_t>(writer, "Name=\"connectivity\"", "Int64", surface.Corners);
-  WriteArray<std::int64_t>(writer, "Name=\"offsets\"", "Int64",
-    std::vector<std::size_t>(surface.Begin.begin() + 1, surface.Begin.end()));
-  if (isGrid)
-  {
-    std::vector<int> types;
-    for (std::size_t c = 0; c < surface.NumberOfCells(); ++c)
-    {
-      types.push_back(surface.Begin[c + 1] - surface.Begin[c] == 3 ? 5 : 7);
-    }
-    WriteArray<std::uint8_t>(writer, "Name=\"types\"", "UInt8", types);
-  }
-  writer.Text(
-    std::string(isGrid ? "</Cells>" : "</Polys>") + "\n</Piece>\n</" + type + ">\n</VTKFile>\n");
-  return writer.Written;
 }
 
 } // namespace SurfaceDiffusion::Files
