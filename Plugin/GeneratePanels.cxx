@@ -3,6 +3,7 @@
 #include "Run/Solve.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -50,7 +51,7 @@ std::string Text(double value)
 /// The XML of a setting, but for what its element says.
 struct Panel
 {
-  std::string Tag, Default, Domain, Documentation;
+  std::string Tag, Default, Domain, Documentation, OnlyIf;
   std::map<std::string, std::string> Words; ///< of a choice, by value
   bool CanBeAnimated = true;
   int Elements = 1;
@@ -74,11 +75,20 @@ public:
     Fail("there are no settings of \"" + model + '"');
   }
 
-  const Panel& Find(const std::string& name) const
+  /// Null if the model does not have the setting.
+  const Panel* Known(const std::string& name) const
   {
     const auto found = this->Panels.find(name);
-    return found != this->Panels.end() ? found->second
-                                       : (Fail("there is no setting " + name), found->second);
+    return found != this->Panels.end() ? &found->second : nullptr;
+  }
+  const Panel& Find(const std::string& name) const
+  {
+    const Panel* const found = this->Known(name);
+    if (!found)
+    {
+      Fail("there is no setting " + name);
+    }
+    return *found;
   }
 
   void Number(const SettingInfo& info, double& value, const SettingRange& range) override
@@ -149,14 +159,32 @@ private:
     panel.Default = value;
     panel.Domain = domain;
     panel.Documentation = info.Documentation;
+    panel.OnlyIf = info.OnlyIf;
     return panel;
   }
 
   std::map<std::string, Panel> Panels;
 };
 
-/// A condition such as "Exact=0 and (MaskArray[4]!= or Solver=1)" as ParaView's decorators. Parts that
-/// are separated by ';' have to hold, too.
+/// The number of a word of a choice, of the first model that has it.
+std::string NumberOfWord(const std::string& setting, const std::string& word)
+{
+  for (const NamedSettings& model : SettingsOfModels)
+  {
+    const PanelMaker maker(model.Function);
+    const Panel* const panel = maker.Known(setting);
+    for (const auto& [number, known] : panel ? panel->Words : Attributes())
+    {
+      if (known == word)
+      {
+        return number;
+      }
+    }
+  }
+  Fail(setting + " has no word " + word);
+}
+
+/// A condition of SettingInfo::OnlyIf as ParaView's decorators.
 class Condition
 {
 public:
@@ -218,27 +246,42 @@ private:
       const std::string text = this->Expression();
       return this->Takes(")") ? text : (Fail("a ) is missing in \"" + this->Source + '"'), text);
     }
-    this->Takes("");
-    const std::size_t end = this->Source.find_first_of("!=[", this->At);
-    std::string text = "<PropertyWidgetDecorator type=\"GenericDecorator\" mode=\"" + this->Mode +
-      "\" property=\"" + this->Source.substr(this->At, end - this->At) + '"';
-    this->At = end;
-    if (this->Takes("["))
+    const bool isAbsent = this->Takes("!");
+    const std::string name = this->Until("!= );");
+    if (name == "CellData")
     {
-      const std::size_t close = this->Source.find(']', this->At);
-      text += " index=\"" + this->Source.substr(this->At, close - this->At) + '"';
-      this->At = close + 1;
+      return this->Decorator("InputArray\" index=\"3", "1", false);
+    }
+    if (this->At == this->Source.size() ||
+      std::string(" );").find(this->Source[this->At]) != std::string::npos)
+    {
+      return this->Decorator(name + "\" index=\"4", "", !isAbsent);
     }
     const bool isInverse = this->Takes("!");
-    if (!this->Takes("="))
+    if (isAbsent || !this->Takes("="))
     {
       Fail("\"" + this->Source + "\" is no condition");
     }
-    const std::size_t after =
-      std::min(this->Source.find_first_of(" );", this->At), this->Source.size());
-    text += " value=\"" + this->Source.substr(this->At, after - this->At) + '"';
-    this->At = after;
-    return text + (isInverse ? " inverse=\"1\"/>" : "/>");
+    std::string value = this->Until(" );");
+    if (std::isalpha(static_cast<unsigned char>(value[0])) != 0)
+    {
+      value = NumberOfWord(name, value);
+    }
+    return this->Decorator(name, value, isInverse);
+  }
+  /// The text up to one of these characters, which is passed.
+  std::string Until(const char* ends)
+  {
+    this->Takes("");
+    const std::size_t from = this->At;
+    this->At = std::min(this->Source.find_first_of(ends, from), this->Source.size());
+    return this->Source.substr(from, this->At - from);
+  }
+  std::string Decorator(const std::string& name, const std::string& value, bool isInverse) const
+  {
+    return "<PropertyWidgetDecorator type=\"GenericDecorator\" mode=\"" + this->Mode +
+      "\" property=\"" + name + "\" value=\"" + value + '"' +
+      (isInverse ? " inverse=\"1\"/>" : "/>");
   }
 
   const std::string Source;
@@ -380,10 +423,10 @@ private:
     }
     return text + ">";
   }
-  static std::string HintsOf(const Element& element, bool hasDefault)
+  static std::string HintsOf(const Element& element, const std::string& onlyIf, bool hasDefault)
   {
     const std::string hints = (hasDefault ? "" : "<NoDefault/>") +
-      Condition(element.Take("when")).Decorators("visibility") +
+      Condition(onlyIf).Decorators("visibility") +
       Condition(element.Take("enabled_when")).Decorators("enabled_state");
     return hints.empty() ? hints : "<Hints>" + hints + "</Hints>";
   }
@@ -425,8 +468,8 @@ private:
     }
     const bool hasDefault = scale.empty() || !element.Take("starts_in_domain").empty();
     return Open(panel.Tag, element, more) + domain +
-      Documentation(Escape(panel.Documentation) + element.Content) + HintsOf(element, hasDefault) +
-      "</" + panel.Tag + ">";
+      Documentation(Escape(panel.Documentation) + element.Content) +
+      HintsOf(element, panel.OnlyIf, hasDefault) + "</" + panel.Tag + ">";
   }
   /// order: the values in the order of the menu, if it is not that of the words.
   static std::string Menu(const std::map<std::string, std::string>& words, const std::string& order)
@@ -459,7 +502,8 @@ private:
       "<ArrayListDomain name=\"array_list\" attribute_type=\"" + element.Take("type", "Scalars") +
       "\" input_domain_name=\"" + element.Take("domain") +
       "\" data_type=\"VTK_DATA_ARRAY\" none_string=\"\">" + Required() + "</ArrayListDomain>" +
-      Documentation(element.Content) + HintsOf(element, false) + "</" + tag + ">";
+      Documentation(element.Content) + HintsOf(element, element.Take("when"), false) + "</" + tag +
+      ">";
   }
   static std::string InformationOf(const Element& element)
   {

@@ -18,9 +18,6 @@ namespace SurfaceDiffusion
 /// The models and their settings as JSON, in the words of the package for numpy.
 std::string DescribeModels();
 
-/// The name of a setting in Python: "NumberOfTimeSteps" is number_of_time_steps.
-std::string PythonName(const std::string& setting);
-
 /// The words of a text with single spaces.
 std::vector<std::string> WordsOf(const char* text);
 

@@ -194,7 +194,7 @@ SurfaceData Engine::ReadInputs(const NamedSettings& model, const val& given, con
   for (const std::string& word : WordsOf(model.Inputs))
   {
     const val value = given[word];
-    if (!isGiven(value))
+    if (!isGiven(value) || word == "terms") // which are in place of the data
     {
       continue;
     }
@@ -275,7 +275,7 @@ bool Engine::ReadSamples(const NamedSettings& model, const std::string& name, st
   const auto found = std::find_if(this->Samples.Arrays.begin(), this->Samples.Arrays.end(),
     [&](const Files::FileArray& array) { return array.Name == name; });
   if (found == this->Samples.Arrays.end() || this->Find(name, "") ||
-    std::string(model.Function) != "interpolate")
+    !dynamic_cast<const InterpolationSettings*>(model.Make().get()))
   {
     return false;
   }

@@ -3,6 +3,7 @@
 #include "Engine.h"
 
 #include "Json.h"
+#include "Run/PythonNames.h"
 
 #include <algorithm>
 #include <cctype>
@@ -17,20 +18,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-/// Settings of pipelines, which a page has no use for.
-bool IsHidden(const std::string& name)
-{
-  return name == "GenerateTimeSteps" || name == "CheckpointMemoryLimit";
-}
-
-/// The title of a model or setting: words with a capital at the beginning.
-std::string TitleOf(std::string name)
-{
-  std::replace(name.begin(), name.end(), '_', ' ');
-  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-  return name;
-}
 
 class Lister : public SettingVisitor
 {
@@ -88,7 +75,7 @@ private:
   void Add(const SettingInfo& info, const char* kind, const std::string& value,
     const SettingRange& range, const std::string& choices = "[]")
   {
-    if (IsHidden(info.Name))
+    if (IsOfPipelines(info.Name))
     {
       return;
     }
@@ -99,10 +86,10 @@ private:
         ",\"max\":" + limit(range.High) + ",\"text\":" + Json::Quoted(range.Text) + "}"
                                                       : "null";
     this->Entries.push_back("{\"name\":" + Json::Quoted(name) +
-      ",\"property\":" + Json::Quoted(info.Name) + ",\"title\":" + Json::Quoted(TitleOf(name)) +
-      ",\"kind\":\"" + kind + "\",\"unit\":" + Json::Quoted(info.Unit) +
-      ",\"help\":" + Json::Quoted(info.Documentation) + ",\"default\":" + value +
-      ",\"range\":" + limits + ",\"choices\":" + choices + ",\"onlyIf\":null}");
+      ",\"property\":" + Json::Quoted(info.Name) + ",\"kind\":\"" + kind +
+      "\",\"unit\":" + Json::Quoted(info.Unit) + ",\"help\":" + Json::Quoted(info.Documentation) +
+      ",\"default\":" + value + ",\"range\":" + limits + ",\"choices\":" + choices +
+      ",\"onlyIf\":" + Json::Quoted(info.OnlyIf) + "}");
   }
 };
 
@@ -186,7 +173,7 @@ private:
     const Assign& assign)
   {
     const std::string name = PythonName(info.Name);
-    if (IsHidden(info.Name))
+    if (IsOfPipelines(info.Name))
     {
       return;
     }
@@ -215,36 +202,6 @@ private:
 
 } // namespace
 
-std::string PythonName(const std::string& setting)
-{
-  if (setting == "RandomSeed")
-  {
-    return "seed";
-  }
-  if (setting == "ResultOnCells" || setting == "KeepCellDetail")
-  {
-    return setting == "ResultOnCells" ? "result_on_faces" : "keep_face_detail";
-  }
-  if (setting == "UpDirection")
-  {
-    return "up";
-  }
-  const auto isUpper = [&](std::size_t i)
-  { return i < setting.size() && setting[i] >= 'A' && setting[i] <= 'Z'; };
-  const auto isLower = [&](std::size_t i)
-  { return i < setting.size() && setting[i] >= 'a' && setting[i] <= 'z'; };
-  std::string name;
-  for (std::size_t i = 0; i < setting.size(); ++i)
-  {
-    if (i > 0 && isUpper(i) && (!isUpper(i - 1) || isLower(i + 1)))
-    {
-      name += '_';
-    }
-    name += static_cast<char>(std::tolower(static_cast<unsigned char>(setting[i])));
-  }
-  return name;
-}
-
 std::string DescribeModels()
 {
   const auto describe = [](const NamedSettings& model)
@@ -256,9 +213,8 @@ std::string DescribeModels()
     const auto input = [](const std::string& word)
     { return "{\"name\":" + Json::Quoted(word) + "}"; };
     const auto itself = [](const std::string& text) { return text; };
-    return "{\"name\":" + Json::Quoted(model.Function) +
-      ",\"title\":" + Json::Quoted(TitleOf(model.Function)) +
-      ",\"data\":" + Json::Quoted(model.Data) + ",\"needsData\":" + Json::Bool(model.NeedsData) +
+    return "{\"name\":" + Json::Quoted(model.Function) + ",\"data\":" + Json::Quoted(model.Data) +
+      ",\"needsData\":" + Json::Bool(model.NeedsData) +
       ",\"settings\":" + Json::List(lister.Entries, itself) +
       ",\"inputs\":" + Json::List(WordsOf(model.Inputs), input) + "}";
   };

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 "use strict";
 
-// The settings of a model as a form, made from their declarations and from the plugin's panels.
+// Elements of the page, and the settings of a model as a form, made from their declarations and from the
+// plugin's panels.
+
+const $ = (id) => document.getElementById(id);
 
 /** "NumberOfTimeSteps" as "Number of time steps", "FWHM" as it is. */
 function wordsOf(name) {
@@ -11,9 +14,9 @@ function wordsOf(name) {
 }
 
 /**
- * Whether a condition of the panels holds: "Exact=0 and (MaskArray[4]!= or Method=1)". valueOf(name,
- * index): a setting's value as a number, or what an array is; undefined: the model has no such setting,
- * and the part holds.
+ * Whether a condition of SettingInfo::OnlyIf holds: "Exact=0 and (MaskArray or Method=Heat)". valueOf(name):
+ * a setting's value as a number or word, or whether an array is given; undefined: the model has no such
+ * setting, and the part holds.
  */
 function holds(condition, valueOf) {
   return condition.split(";").every((part) => {
@@ -25,9 +28,9 @@ function holds(condition, valueOf) {
         tokens.shift();
         return inner;
       }
-      const [, name, index, sign, wanted] = tokens.shift().match(/^(\w+)(?:\[(\d)\])?(!?=)(.*)$/);
-      const value = valueOf(name, index);
-      return value === undefined || (String(value) === wanted) === (sign === "=");
+      const [, absent, name, sign, wanted] = tokens.shift().match(/^(!?)(\w+)(?:(!?=)(.*))?$/);
+      const value = valueOf(name);
+      return value === undefined || (sign ? (String(value) === wanted) === (sign === "=") : Boolean(value) === !absent);
     };
     const expression = () => {
       let result = term();
@@ -68,7 +71,7 @@ class Controls {
     this.fields = [];
     model.settings.forEach((setting) => {
       const entry = panel.entries[setting.property] || { advanced: true };
-      this.fields.push({ setting, entry, name: setting.name, property: setting.property,
+      this.fields.push({ setting, entry, name: setting.name, property: setting.property, onlyIf: setting.onlyIf,
         advanced: entry.advanced, ...this.inputOf(setting, start[setting.name]) });
     });
     model.inputs.forEach(({ name }) => {
@@ -78,8 +81,8 @@ class Controls {
       if (entry && arrays.length) {
         const input = makeElement("select", {}, makeElement("option", { value: "", textContent: "none" }),
           ...arrays.map((array) => makeElement("option", { value: array.name, textContent: array.name })));
-        this.fields.push({ name, property, entry, advanced: true, isArray: true, input,
-          read: () => input.value || undefined, number: () => input.value });
+        this.fields.push({ name, property, entry, onlyIf: entry.onlyIf, advanced: true, input,
+          read: () => input.value || undefined, present: () => input.value !== "" });
       }
     });
     this.fields.sort((a, b) => place(a.property) - place(b.property));
@@ -89,20 +92,20 @@ class Controls {
     this.update();
   }
 
-  /** The input of a setting: read() is its value, undefined for the default; number() that of conditions. */
+  /** The input of a setting: read() is its value, undefined for the default; present() that of conditions. */
   inputOf(setting, start) {
     const given = start === undefined ? setting.default : start;
     if (setting.kind === "switch") {
       const input = makeElement("input", { type: "checkbox", checked: Boolean(given) });
       return { input, read: () => (input.checked === setting.default ? undefined : input.checked),
-        number: () => Number(input.checked) };
+        present: () => Number(input.checked) };
     }
     if (setting.kind === "choice") {
       const input = makeElement("select", {}, ...setting.choices.map((word) =>
         makeElement("option", { value: word, textContent: wordsOf(word) })));
       input.value = given;
       return { input, read: () => (input.value === setting.default ? undefined : input.value),
-        number: () => (setting.words || setting.choices).indexOf(input.value) };
+        present: () => input.value };
     }
     const isList = Array.isArray(setting.default);
     const text = (value) => (isList ? value.join(" ") : String(value));
@@ -123,7 +126,7 @@ class Controls {
         }
         return String(found) === String(setting.default) ? undefined : found;
       },
-      number: () => value() };
+      present: value };
   }
 
   rowOf(field) {
@@ -145,15 +148,16 @@ class Controls {
 
   /** Hides what has no effect with the values of the others. */
   update() {
-    const valueOf = (name, index) => {
-      if (name === "InputArray") { return index === "3" ? Number(this.association === "cell") : ""; }
+    const valueOf = (name) => {
+      if (name === "CellData") { return this.association === "cell"; }
       const field = this.fields.find((other) => other.property === name);
-      if (field) { return field.number(); }
+      if (field) { return field.present(); }
+      if (name === "InputArray") { return this.hasData; }
       // The page has times, but no pipeline to play them.
-      return name in ARRAY_INPUTS ? "" : name === "GenerateTimeSteps" ? 0 : undefined;
+      return name in ARRAY_INPUTS ? false : name === "GenerateTimeSteps" ? 0 : undefined;
     };
     this.fields.forEach((field) => {
-      field.row.hidden = Boolean(field.entry.when) && !holds(field.entry.when, valueOf);
+      field.row.hidden = Boolean(field.onlyIf) && !holds(field.onlyIf, valueOf);
     });
   }
 

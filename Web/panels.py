@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes what the page asks for at first sight: panels.py PLUGIN OUTPUT.js.
 
-The panels of the plugin say which settings come first, which are advanced, what a setting depends on,
-and with which part of the surface's size it starts. The page has the same, from the same XML; names,
-ranges and help come from the settings' declarations.
+The panels of the plugin say which settings come first, which are advanced, what their labels are, and
+which arrays there are. The page has the same, from the same XML; names, ranges, help and conditions come
+from the settings' declarations.
 """
 import json
 import sys
@@ -25,10 +25,10 @@ def entries_of(proxy, proxies):
     for element in proxy.iter():
         if element.tag in ("Setting", "Array"):
             entry = {"advanced": element.get("panel_visibility") == "advanced"}
-            for name in ("when", "label", "scale"):
-                if element.get(name):
-                    entry[name] = float(element.get(name)) if name == "scale" else element.get(name)
+            if element.get("label"):
+                entry["label"] = element.get("label")
             if element.tag == "Array":
+                entry["onlyIf"] = element.get("when", "")
                 entry["help"] = " ".join((element.text or "").split())
             entries.pop(element.get("name"), None)
             entries[element.get("name")] = entry

@@ -29,14 +29,17 @@ void BlurSettings::Visit(SettingVisitor& visitor)
                    "Full width at half maximum, in the unit of the coordinates, of a blur that "
                    "the data have gone through on the surface and that Mode SteadyState removes. "
                    "0: none. It is meant for widths of 2 to 8 mean edge lengths. The blur of a "
-                   "camera's image is not a blur on the surface." },
+                   "camera's image is not a blur on the surface.",
+                   "(Mode=SteadyState and FidelityNorm=L2 and Discretization=Linear and "
+                   "ColorModel=RGB) or BlurFWHM!=0" },
     this->FWHM, SettingRange::NonNegative());
   visitor.Integer({ "BlurSteps", "",
                     "Number of implicit steps that model the blur of BlurFWHM. With 4 its point "
                     "spread function has the half maximum of a Gaussian but longer tails: if the "
                     "blur was that of heat flow, waves of 1 to 2 widths come back up to half too "
                     "high. More steps are more similar to a Gaussian, and amplify noise more: 64 "
-                    "restore waves of 1.5 widths to 2 %." },
+                    "restore waves of 1.5 widths to 2 %.",
+                    "BlurFWHM!=0" },
     this->Steps, SettingRange::Between(2.0, 64.0, "2 to 64"));
 }
 

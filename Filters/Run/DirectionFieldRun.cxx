@@ -60,18 +60,21 @@ void DirectionFieldSettings::Visit(SettingVisitor& visitor)
   visitor.Choice({ "PrincipalDirection", "",
                    "The principal direction: of minimum curvature (the axis of a cylinder) or of "
                    "maximum curvature, by absolute value. With Method Smooth it selects one of "
-                   "several equally smooth fields." },
+                   "several equally smooth fields.",
+                   "Method!=Hints" },
     this->PrincipalDirection, { "Minimum", "Maximum" }, {});
   visitor.Number({ "SmoothingLength", "coordinates",
                    "Full width at half maximum of the blur of the normals before curvature is "
                    "measured, in the unit of the coordinates. 0: none. -1: four mean edge "
-                   "lengths." },
+                   "lengths.",
+                   "Method!=Hints" },
     this->SmoothingLength,
     SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: four mean edge lengths"));
   visitor.Number({ "HintWeight", "1/h^2",
                    "The weight of hints and curvature relative to smoothness, above 0, in 1/h^2, "
                    "where h is the mean edge length. The field follows them over lengths down to "
-                   "h/sqrt(HintWeight). Used by CurvatureAligned and Hints." },
+                   "h/sqrt(HintWeight). Used by CurvatureAligned and Hints.",
+                   "Method=CurvatureAligned or Method=Hints" },
     this->HintWeight, SettingRange::Positive());
   visitor.Number({ "Angle", "degrees",
                    "The angle, in degrees, by which the field is rotated in the surface at the "

@@ -18,7 +18,8 @@ void DistanceSettings::Visit(SettingVisitor& visitor)
                    "Automatic: Exact where it takes at most a second, without speeds and start "
                    "times, and Eikonal otherwise. Exact: the lengths of the shortest ways over the "
                    "triangles. Eikonal: fast marching, fast on large surfaces; also with speeds "
-                   "and start times. Heat: the heat method, with smooth level sets." },
+                   "and start times. Heat: the heat method, with smooth level sets.",
+                   "Method=Heat or Method=Exact or (!SpeedArray and !SourceTimes)" },
     this->Method, { "Heat", "Eikonal", "Exact", "Automatic" });
   visitor.Number({ "MaximumDistance", "coordinates",
                    "The largest distance of points and lines of sources from the surface, in the "
@@ -26,10 +27,12 @@ void DistanceSettings::Visit(SettingVisitor& visitor)
     this->MaximumDistance, SettingRange::NonNegative());
   visitor.Number({ "AlongSpeed", "",
                    "Factor of the speed of fronts along the direction, above 0. If it differs from "
-                   "AcrossSpeed, DirectionArray is required." },
+                   "AcrossSpeed, DirectionArray is required.",
+                   "(DirectionArray and (Method=Eikonal or Method=Automatic)) or AlongSpeed!=1" },
     this->AlongSpeed, SettingRange::Positive());
   visitor.Number(
-    { "AcrossSpeed", "", "Factor of the speed of fronts across the direction, above 0." },
+    { "AcrossSpeed", "", "Factor of the speed of fronts across the direction, above 0.",
+      "(DirectionArray and (Method=Eikonal or Method=Automatic)) or AcrossSpeed!=1" },
     this->AcrossSpeed, SettingRange::Positive());
   visitor.Switch({ "ComputeGradient", "",
                    "On: the gradient of the result is added, vectors in the tangent planes that "

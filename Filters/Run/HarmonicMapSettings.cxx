@@ -31,7 +31,8 @@ void HarmonicMapSettings::Visit(SettingVisitor& visitor)
   visitor.Number({ "Beta", "1/h^2",
                    "The regularisation beta in |grad u|^2 + beta, above 0, in 1/length^2 "
                    "(natural units: 1/h^2). Gradients below its square root are smoothed as with "
-                   "Exponent 2." },
+                   "Exponent 2.",
+                   "Exponent!=2" },
     this->Beta, SettingRange::NonNegative());
   visitor.Choice({ "Scheme", "",
                    "The scheme of a time step. TangentPlane: one linear solve for displacements "
@@ -42,7 +43,8 @@ void HarmonicMapSettings::Visit(SettingVisitor& visitor)
     this->Scheme, { "ExplicitReaction", "TangentPlane", "MinimizingMovement" });
   visitor.Switch({ "ConsistentReaction", "",
                    "Use the reaction term u g |grad u|^2, which balances the diffusion, instead "
-                   "of the paper's u |grad u|^p." },
+                   "of the paper's u |grad u|^p.",
+                   "Scheme=ExplicitReaction" },
     this->ConsistentReaction);
   visitor.Switch(
     { "ProjectToSphere", "", "Normalise the vectors after each step. Off: their lengths drift." },

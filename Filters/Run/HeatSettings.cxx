@@ -76,18 +76,23 @@ void HeatSettings::Visit(SettingVisitor& visitor)
                    "has the width of FWHM from 2 mean edge lengths on. Automatic: Mixed with FWHM, "
                    "Lumped otherwise." },
     this->MassMatrix, { "Automatic", "Lumped", "Mixed" });
-  visitor.Choice({ "Mode", "",
-                   "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the limit for "
-                   "infinite time, in one solve. It is the harmonic function of the fixed or "
-                   "held values, the minimiser of the energy if there is a fidelity term, and "
-                   "otherwise the mean of each connected component." },
+  visitor.Choice(
+    { "Mode", "",
+      "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the limit for "
+      "infinite time, in one solve. It is the harmonic function of the fixed or "
+      "held values, the minimiser of the energy if there is a fidelity term, and "
+      "otherwise the mean of each connected component.",
+      "(BlurFWHM=0 and (FWHM=0 or Mode=SteadyState)) or (BlurFWHM!=0 and Mode=TimeSteps)" },
     this->Mode, { "TimeSteps", "SteadyState" });
   visitor.Number({ "FWHM", "coordinates",
                    "Full width at half maximum of the blur, in the unit of the coordinates. It "
                    "replaces TimeStep, and times are then in that unit squared. It requires "
-                   "diffusivities of 1 and no fidelity term. 0: off." },
+                   "diffusivities of 1 and no fidelity term. 0: off.",
+                   "(Mode=TimeSteps and AutomaticFidelity=0 and FidelityWeight=0 and "
+                   "AlongDiffusivity=1 and AcrossDiffusivity=1) or FWHM!=0" },
     this->FWHM, SettingRange::NonNegative());
-  VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
+  VisitAutomaticFidelity(
+    visitor, this->AutomaticFidelity, this->NoiseLevel, "FWHM=0 or AutomaticFidelity=1");
   this->Blur.Visit(visitor);
 }
 

@@ -156,7 +156,8 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
   visitor.Switch({ "AutomaticSmoothing", "",
                    "Without Exact. On: find mu, the strength of the smoothing, by generalised "
                    "cross-validation (of few values with the restricted likelihood as a lower "
-                   "bound), or from NoiseLevel if that is above 0. Off: mu is Smoothing." },
+                   "bound), or from NoiseLevel if that is above 0. Off: mu is Smoothing.",
+                   "Exact=0" },
     this->AutomaticSmoothing);
   visitor.Number(
     { "NoiseLevel", "values",
@@ -164,11 +165,13 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
       "the data, 0 or more. AutomaticSmoothing and the standard errors use it. 0: "
       "estimated from what the smoothed result leaves of the values, and from "
       "repeated values at one place. Correlated noise is reported by a warning if there are 200 "
-      "values or more." },
+      "values or more.",
+      "Exact=0" },
     this->NoiseLevel, SettingRange::NonNegative());
   visitor.Number({ "Smoothing", "h^2",
                    "mu, with AutomaticSmoothing off: the weight of the energy against the values, "
-                   "above 0, in length^2 (natural units: h^2)." },
+                   "above 0, in length^2 (natural units: h^2).",
+                   "Exact=0 and AutomaticSmoothing=0" },
     this->Smoothing,
     this->AutomaticSmoothing || this->Exact ? SettingRange::Anything() : SettingRange::Positive());
   visitor.Switch({ "KeepRange", "",
@@ -190,7 +193,8 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
                    "parts. Natural: the result becomes flat towards the boundary. Free: it "
                    "continues its slope, and linear functions on flat pieces come back exactly "
                    "from a few values: of a planar wave of 0.6 m/s the speed near the boundary is "
-                   "0.60 m/s, and 0.8 to 1.1 m/s with Natural." },
+                   "0.60 m/s, and 0.8 to 1.1 m/s with Natural.",
+                   "IntrinsicDelaunay=0 and AlongDiffusivity=1 and AcrossDiffusivity=1" },
     this->Boundary, { "Natural", "Free", "Automatic" });
   visitor.Number({ "MaximumDistance", "coordinates",
                    "The largest distance of points with values from the surface, in the unit of "
@@ -198,10 +202,12 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
     this->MaximumDistance, SettingRange::NonNegative());
   visitor.Number({ "AlongDiffusivity", "",
                    "Factor of the diffusivity along the direction, above 0. If it differs from "
-                   "AcrossDiffusivity, DirectionArray is required." },
+                   "AcrossDiffusivity, DirectionArray is required.",
+                   "(DirectionArray and Boundary!=Free) or AlongDiffusivity!=1" },
     this->AlongDiffusivity, SettingRange::Positive());
   visitor.Number(
-    { "AcrossDiffusivity", "", "Factor of the diffusivity across the direction, above 0." },
+    { "AcrossDiffusivity", "", "Factor of the diffusivity across the direction, above 0.",
+      "(DirectionArray and Boundary!=Free) or AcrossDiffusivity!=1" },
     this->AcrossDiffusivity, SettingRange::Positive());
   VisitResultOnCells(visitor, this->ResultOnCells);
 }

@@ -111,7 +111,8 @@ void MumfordShahSettings::Visit(SettingVisitor& visitor)
     { { "TimeStep",
         { "",
           "The time between two published states, above 0, in any unit: the states "
-          "do not depend on it." } },
+          "do not depend on it.",
+          "GenerateTimeSteps=1" } },
       { "NumberOfTimeSteps",
         { "", "The largest number of steps. 0: the output is the initial state." } },
       { "Tolerance",
@@ -130,7 +131,8 @@ void MumfordShahSettings::Visit(SettingVisitor& visitor)
     this->AutomaticThreshold);
   visitor.Number({ "NoiseLevel", "values",
                    "Standard deviation of the noise, of one component, in the unit of the data. "
-                   "0: estimated from the data." },
+                   "0: estimated from the data.",
+                   "AutomaticThreshold=1" },
     this->NoiseLevel, SettingRange::NonNegative());
   visitor.Number({ "EdgeThreshold", "R",
                    "The jump from which on an edge costs less than smoothing, above 0, in the "
@@ -138,12 +140,14 @@ void MumfordShahSettings::Visit(SettingVisitor& visitor)
                    "are smoothed, and jumps above 1.25 of it are kept. Noise with a standard "
                    "deviation above a third of it, over all components together, makes edges "
                    "everywhere, as do slopes above EdgeThreshold/(2 SmoothingLength). It has no "
-                   "effect with AutomaticThreshold." },
+                   "effect with AutomaticThreshold.",
+                   "AutomaticThreshold=0" },
     this->EdgeThreshold, SettingRange::Positive());
   visitor.Number({ "SmoothingLength", "h",
                    "The length over which data are smoothed between edges, above 0, in the unit "
                    "of lengths that Units selects (natural units: h). lambda is FidelityWeight "
-                   "over its square. It has no effect with AutomaticThreshold." },
+                   "over its square. It has no effect with AutomaticThreshold.",
+                   "AutomaticThreshold=0" },
     this->SmoothingLength, SettingRange::Positive());
   visitor.Number({ "EdgeWidth", "h",
                    "eps, the width of the transition of v beside an edge, above 0, in the unit "

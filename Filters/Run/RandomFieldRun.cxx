@@ -21,11 +21,13 @@ void RandomFieldSettings::Visit(SettingVisitor& visitor)
     this->Covariance, { "Gaussian", "MaternNu1", "MaternNu3" });
   visitor.Number({ "FWHM", "coordinates",
                    "Of Gaussian: full width at half maximum of the kernel that white noise would "
-                   "be smoothed with, in the unit of the coordinates. 0: 10 h." },
+                   "be smoothed with, in the unit of the coordinates. 0: 10 h.",
+                   "Covariance=Gaussian" },
     this->FWHM, SettingRange::NonNegative());
   visitor.Number({ "Range", "coordinates",
                    "Of Matern's: the distance at which the correlation has fallen to 0.14, "
-                   "sqrt(8 nu)/kappa, in the unit of the coordinates. 0: 20 h." },
+                   "sqrt(8 nu)/kappa, in the unit of the coordinates. 0: 20 h.",
+                   "Covariance!=Gaussian" },
     this->Range, SettingRange::NonNegative());
   visitor.Integer({ "NumberOfFields", "",
                     "The number of fields, which are independent: the components of the result." },

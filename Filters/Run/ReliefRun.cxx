@@ -87,11 +87,13 @@ void ReliefSettings::Visit(SettingVisitor& visitor)
     this->Levels, { "Smooth", "Two" }, {});
   visitor.Number({ "Threshold", "",
                    "The value in the middle between two levels, in the unit of the array. Used by "
-                   "Levels Two." },
+                   "Levels Two.",
+                   "Levels=Two" },
     this->Threshold, SettingRange::AnyFinite());
   visitor.Number({ "Flank", "coordinates",
                    "The width of the slope between two levels along the surface, in the unit of "
-                   "the coordinates. 0: a step. Used by Levels Two." },
+                   "the coordinates. 0: a step. Used by Levels Two.",
+                   "Levels=Two" },
     this->Flank, SettingRange::NonNegative());
   SettingRange angles = SettingRange::Between(0.0, 90.0, "0 to 90 degrees, or -1: off");
   angles.HasSpecial = true;
@@ -101,7 +103,7 @@ void ReliefSettings::Visit(SettingVisitor& visitor)
                    "normal and the horizontal, have no relief. 0: no face that faces down. -1: "
                    "all faces may have relief." },
     this->Overhang, angles);
-  visitor.Numbers({ "UpDirection", "", "The direction of printing, for Overhang." },
+  visitor.Numbers({ "UpDirection", "", "The direction of printing, for Overhang.", "Overhang!=-1" },
     this->UpDirection, SettingRange::AnyFinite());
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }

@@ -22,6 +22,7 @@ public:
   {
     const char* Unit;
     const char* Documentation;
+    const char* OnlyIf = nullptr; ///< null: that of the base class
   };
 
   Rewording(SettingVisitor& visitor, std::map<std::string, Words> words)
@@ -57,9 +58,13 @@ private:
   SettingInfo Reword(const SettingInfo& info) const
   {
     const auto found = this->ByName.find(info.Name);
-    return found == this->ByName.end()
-      ? info
-      : SettingInfo{ info.Name, found->second.Unit, found->second.Documentation, info.Scope };
+    if (found == this->ByName.end())
+    {
+      return info;
+    }
+    const Words& words = found->second;
+    return { info.Name, words.Unit, words.Documentation, info.Scope,
+      words.OnlyIf ? words.OnlyIf : info.OnlyIf };
   }
 
   SettingVisitor& Visitor;

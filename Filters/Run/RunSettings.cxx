@@ -48,18 +48,22 @@ void RunSettings::Visit(SettingVisitor& visitor)
                    "Inpaint: masked points are missing and are filled in. Exclude: triangles "
                    "with a masked point, and masked cells, are ignored, nothing flows across "
                    "them, and masked points and cells keep their values. The remaining triangles "
-                   "are the region of interest." },
+                   "are the region of interest.",
+                   "MaskArray and (HoldKnownValues=0 or MaskMode=Exclude)" },
     this->MaskMode, { "Inpaint", "Exclude" });
   visitor.Integer({ "RandomSeed", "",
                     "The seed of all random numbers. The same seed gives the same result on every "
-                    "machine." },
+                    "machine.",
+                    "InitialFill=Noise" },
     this->RandomSeed, SettingRange::AnyFinite());
-  visitor.Switch({ "IntrinsicDelaunay", "",
-                   "Assemble the Laplace-Beltrami operator on the intrinsic Delaunay "
-                   "triangulation of the same surface. No points are added. Its nonnegative "
-                   "cotan weights let linear diffusion keep the bounds of the data for triangles "
-                   "of any shape.",
-                   SettingScope::Surface },
+  visitor.Switch(
+    { "IntrinsicDelaunay", "",
+      "Assemble the Laplace-Beltrami operator on the intrinsic Delaunay "
+      "triangulation of the same surface. No points are added. Its nonnegative "
+      "cotan weights let linear diffusion keep the bounds of the data for triangles "
+      "of any shape.",
+      SettingScope::Surface,
+      "(!DiffusionRateArray and DiffusionAxes=0 and Boundary!=Free) or IntrinsicDelaunay=1" },
     this->IntrinsicDelaunay);
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
@@ -89,24 +93,27 @@ void RunSettings::RequireData(const FieldSummary* fields, Problems& problems)
 void TimeSettings::Visit(SettingVisitor& visitor)
 {
   visitor.Number(
-    { "TimeStep", "time", "The time step, above 0, in the unit of time that Units selects." },
+    { "TimeStep", "time", "The time step, above 0, in the unit of time that Units selects.",
+      "Mode=TimeSteps; FWHM=0; AutomaticTimeStep=0" },
     this->TimeStep, SettingRange::Positive());
   visitor.Integer(
     { "NumberOfTimeSteps", "", "The number of time steps. 0: the output is the initial state.",
-      SettingScope::Output }, // a longer run continues a shorter one
+      SettingScope::Output, "Mode=TimeSteps" }, // a longer run continues a shorter one
     this->NumberOfTimeSteps,
     SettingRange::Between(0.0, LargestNumberOfTimeSteps, "0 to 1000000000"));
   visitor.Switch({ "GenerateTimeSteps", "",
                    "Publish time steps; time 0 is the initial state. Off: the output is the "
-                   "final state." },
+                   "final state.",
+                   "Mode=TimeSteps" },
     this->GenerateTimeSteps);
   visitor.Integer({ "OutputInterval", "",
                     "The interval k between published time steps: steps 0, k, 2 k, ... and the "
                     "last step are published.",
-                    SettingScope::Output },
+                    SettingScope::Output, "GenerateTimeSteps=1; Mode=TimeSteps" },
     this->OutputInterval, SettingRange::AtLeast(1.0, "1 or more"));
   visitor.Integer({ "CheckpointMemoryLimit", "MiB",
-                    "Memory, in MiB, for stored states, which make going back in time cheap." },
+                    "Memory, in MiB, for stored states, which make going back in time cheap.",
+                    "GenerateTimeSteps=1; Mode=TimeSteps" },
     this->CheckpointMemoryLimit, SettingRange::AtLeast(0.0, "0 or more MiB"));
   this->RunSettings::Visit(visitor);
   visitor.Choice({ "Solver", "",
@@ -117,11 +124,13 @@ void TimeSettings::Visit(SettingVisitor& visitor)
                    "Automatic: the solver with the lowest estimated cost." },
     this->Solver, { "Automatic", "Direct", "ConjugateGradient", "Multigrid" });
   visitor.Number(
-    { "Tolerance", "", "Relative residual at which an iterative solver stops, between 0 and 1." },
+    { "Tolerance", "", "Relative residual at which an iterative solver stops, between 0 and 1.",
+      "Solver!=Direct" },
     this->Tolerance, SettingRange::OpenUnitInterval());
   visitor.Integer({ "MaximumNumberOfIterations", "",
                     "The maximum number of iterations of an iterative solver. It is an error if "
-                    "the solver does not converge within them." },
+                    "the solver does not converge within them.",
+                    "Solver!=Direct" },
     this->MaximumNumberOfIterations, SettingRange::AtLeast(1.0, "1 or more"));
 }
 
@@ -197,14 +206,14 @@ void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance)
   visitor.Number({ "MergeTolerance", "coordinates",
                    "The largest distance of points that are merged, in the unit of the "
                    "coordinates. 0: only points with equal coordinates.",
-                   SettingScope::Surface },
+                   SettingScope::Surface, "MergeCoincidentPoints=1" },
     tolerance, SettingRange::NonNegative());
 }
 
-void VisitTimeIntegrator(
-  SettingVisitor& visitor, TimeIntegrator& integrator, const std::vector<bool>& allowed)
+void VisitTimeIntegrator(SettingVisitor& visitor, TimeIntegrator& integrator,
+  const std::vector<bool>& allowed, const char* onlyIf)
 {
-  visitor.Choice({ "TimeIntegrator", "", "The time integrator." }, integrator,
+  visitor.Choice({ "TimeIntegrator", "", "The time integrator.", onlyIf }, integrator,
     { "FirstOrder", "SecondOrder", "Implicit", "Exponential", "Automatic" }, allowed);
 }
 
@@ -213,11 +222,12 @@ void VisitResultOnCells(SettingVisitor& visitor, bool& onCells)
   visitor.Switch({ "ResultOnCells", "",
                    "Whether the result of data on cells is on cells, too. Off: it is on points. "
                    "No effect on point data.",
-                   SettingScope::Output },
+                   SettingScope::Output, "CellData" },
     onCells);
 }
 
-void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel)
+void VisitAutomaticFidelity(
+  SettingVisitor& visitor, bool& automatic, double& noiseLevel, const char* onlyIf)
 {
   visitor.Switch(
     { "AutomaticFidelity", "",
@@ -228,7 +238,8 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
       "principle, Morozov 1966). Constant parts of the data do not count. Each component "
       "of the data that is not coupled with the others and each connected component of the surface "
       "has a weight of its own. "
-      "FidelityWeight is ignored." },
+      "FidelityWeight is ignored.",
+      onlyIf },
     automatic);
   visitor.Number(
     { "NoiseLevel", "values",
@@ -236,7 +247,8 @@ void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& no
       "data, where factors of the fidelity are 1. 0: estimated from the data, for white "
       "noise (independent from point to point). A warning reports correlated noise, and data that "
       "are smooth between "
-      "neighbours, as noise is that was smoothed or resampled." },
+      "neighbours, as noise is that was smoothed or resampled.",
+      "AutomaticFidelity=1 or BlurFWHM!=0" },
     noiseLevel, SettingRange::NonNegative());
 }
 
@@ -246,25 +258,30 @@ void DataSettings::Visit(SettingVisitor& visitor)
   visitor.Number({ "FidelityWeight", "1/time",
                    "lambda, the weight of the fidelity term lambda chi (f - u), in 1/(unit of "
                    "time). The term pulls the result towards the data wherever they are known "
-                   "(chi = 1)." },
+                   "(chi = 1).",
+                   "AutomaticFidelity=0 and (FWHM=0 or FidelityWeight!=0)" },
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Choice({ "InitialFill", "",
                    "The initial values at missing points. Input: the damaged values themselves, "
                    "or Mean at points that are NaN. Mean: the mean of the known values of the "
                    "connected component. Noise: random values, uniform between the smallest and "
                    "the largest known value. Harmonic: the harmonic function of the known "
-                   "values." },
+                   "values.",
+                   "MaskMode=Inpaint" },
     this->InitialFill, { "Input", "Mean", "Noise", "Harmonic" });
   visitor.Switch({ "HoldKnownValues", "",
                    "Keep the known values exactly and fill in the missing points only. At least "
-                   "one point must be missing, either by MaskArray or because it is NaN." },
+                   "one point must be missing, either by MaskArray or because it is NaN.",
+                   "(MaskMode=Inpaint and MaskArray and !FixedArray) or HoldKnownValues=1" },
     this->HoldKnownValues);
   visitor.Number({ "AlongDiffusivity", "",
                    "Factor of the diffusivity along the direction, 0 or more. If it differs from "
-                   "AcrossDiffusivity, DirectionArray is required." },
+                   "AcrossDiffusivity, DirectionArray is required.",
+                   "(DirectionArray and FWHM=0) or AlongDiffusivity!=1" },
     this->AlongDiffusivity, SettingRange::NonNegative());
   visitor.Number(
-    { "AcrossDiffusivity", "", "Factor of the diffusivity across the direction, 0 or more." },
+    { "AcrossDiffusivity", "", "Factor of the diffusivity across the direction, 0 or more.",
+      "(DirectionArray and FWHM=0) or AcrossDiffusivity!=1" },
     this->AcrossDiffusivity, SettingRange::NonNegative());
   VisitResultOnCells(visitor, this->ResultOnCells);
   visitor.Switch({ "KeepCellDetail", "",
@@ -272,7 +289,7 @@ void DataSettings::Visit(SettingVisitor& visitor)
                    "diffuse on the cells, beside the data at the points, and are added to the "
                    "result. No time steps then return the data. Off: the result is the mean of "
                    "the smoothed data over the cell.",
-                   SettingScope::Output },
+                   SettingScope::Output, "CellData" },
     this->KeepCellDetail);
 }
 

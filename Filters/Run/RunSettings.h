@@ -203,13 +203,14 @@ protected:
 void VisitMerging(SettingVisitor& visitor, bool& merge, double& tolerance);
 
 /// The setting TimeIntegrator of a model with these time integrators.
-void VisitTimeIntegrator(
-  SettingVisitor& visitor, TimeIntegrator& integrator, const std::vector<bool>& allowed);
+void VisitTimeIntegrator(SettingVisitor& visitor, TimeIntegrator& integrator,
+  const std::vector<bool>& allowed, const char* onlyIf = "");
 
 /// The setting ResultOnCells.
 void VisitResultOnCells(SettingVisitor& visitor, bool& onCells);
 
-/// The settings AutomaticFidelity and NoiseLevel.
-void VisitAutomaticFidelity(SettingVisitor& visitor, bool& automatic, double& noiseLevel);
+/// The settings AutomaticFidelity, which is offered under the condition, and NoiseLevel.
+void VisitAutomaticFidelity(
+  SettingVisitor& visitor, bool& automatic, double& noiseLevel, const char* onlyIf);
 
 } // namespace SurfaceDiffusion

@@ -146,7 +146,8 @@ void SegmentationSettings::Visit(SettingVisitor& visitor)
                    "more, in 1/(length value^2) (natural units: 1/(h R^2)), and in 1/(length "
                    "value) for given data terms. The larger it is, the smaller are the regions "
                    "that are kept. The range R includes the noise: under strong noise lambda has "
-                   "to be many times larger. It has no effect with AutomaticFidelity." },
+                   "to be many times larger. It has no effect with AutomaticFidelity.",
+                   "AutomaticFidelity=0" },
     this->FidelityWeight, SettingRange::NonNegative());
   visitor.Switch({ "AutomaticMeans", "",
                    "On: the means of the regions are found, from clusters of the values "

@@ -49,10 +49,29 @@ struct SettingRange
 /// The description of one setting: the single place for its name, range, unit and meaning.
 struct SettingInfo
 {
+  SettingInfo(const char* name, const char* unit, const char* documentation,
+    SettingScope scope = SettingScope::Model, const char* onlyIf = "")
+    : Name(name)
+    , Unit(unit)
+    , Documentation(documentation)
+    , Scope(scope)
+    , OnlyIf(onlyIf)
+  {
+  }
+  SettingInfo(const char* name, const char* unit, const char* documentation, const char* onlyIf)
+    : SettingInfo(name, unit, documentation, SettingScope::Model, onlyIf)
+  {
+  }
+
   const char* Name; ///< as in ParaView and VTK, for instance "TimeStep"
   const char* Unit; ///< empty for pure numbers
   const char* Documentation;
-  SettingScope Scope = SettingScope::Model;
+  SettingScope Scope;
+  /// The condition under which forms offer the setting: it has an effect then, or has a value that excludes
+  /// others. "Exact=0 and (MaskArray or Method=Heat)": values of other settings, numbers or the words of
+  /// choices; names of arrays that are given, !MaskArray: that are not; CellData: the data are on cells.
+  /// ';' separates conditions that hold together. Terms of settings that a model does not have hold.
+  const char* OnlyIf;
 };
 
 /// Receives every setting of a run with its description. A visitor may change the values.

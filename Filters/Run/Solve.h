@@ -122,7 +122,7 @@ inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<C
     "mask roi" },
   { "relief", &MakeDefaults<ReliefSettings>, &MakeSurfaceRun<ReliefRun>, "values", true, "mask" },
   { "segment", &MakeDefaults<SegmentationSettings>, nullptr, "values", true,
-    "seeds mask roi fidelity", "means automatic_means fidelity_weight automatic_fidelity" },
+    "seeds terms mask roi fidelity", "means automatic_means fidelity_weight automatic_fidelity" },
   { "tensor_diffusion", &MakeDefaults<TensorDiffusionSettings>, nullptr, "values", true,
     "mask roi directions fixed fidelity" },
   { "turing_texture", &MakeDefaults<TextureSettings>, nullptr, "initial", false,

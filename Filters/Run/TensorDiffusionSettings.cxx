@@ -44,36 +44,42 @@ void TensorDiffusionSettings::Visit(SettingVisitor& visitor)
     this->Model, { "Beltrami", "CoherenceEnhancing", "EdgeEnhancing" });
   visitor.Number({ "ColorScale", "h/R",
                    "b of Beltrami, above 0, in the unit that Units selects (natural units: h/R). "
-                   "Gradients above 1/b are edges. Small values give linear diffusion." },
+                   "Gradients above 1/b are edges. Small values give linear diffusion.",
+                   "Model=Beltrami" },
     this->ColorScale, SettingRange::Positive());
   visitor.Choice({ "Metric", "",
                    "The area that m of Beltrami measures. Induced: that of the data as a "
                    "surface, so that edges hardly move. Fixed: that of the surface itself, so "
-                   "that totals are conserved. The steady states are the same." },
+                   "that totals are conserved. The steady states are the same.",
+                   "Model=Beltrami" },
     this->Metric, { "Induced", "Fixed" });
   visitor.Number({ "NoiseScale", "h",
                    "sigma, the standard deviation of the Gaussian that smooths the data before "
                    "the structure tensor takes their gradients, in the unit of lengths that "
                    "Units selects (natural units: h). The data themselves are not smoothed by "
-                   "it. 0: none." },
+                   "it. 0: none.",
+                   "Model!=Beltrami" },
     this->NoiseScale, SettingRange::NonNegative());
   visitor.Number({ "IntegrationScale", "h",
                    "rho, the standard deviation of the Gaussian over which CoherenceEnhancing "
                    "averages the direction of lines, in the unit of lengths that Units selects "
-                   "(natural units: h). 0: none." },
+                   "(natural units: h). 0: none.",
+                   "Model=CoherenceEnhancing" },
     this->IntegrationScale, SettingRange::NonNegative());
   visitor.Number({ "Contrast", "R/h",
                    "The gradient, above 0, in the unit that Units selects (natural units: R/h), "
                    "above which CoherenceEnhancing takes data for lines and EdgeEnhancing for "
-                   "edges. To close gaps of noisy lines, take 0.01." },
+                   "edges. To close gaps of noisy lines, take 0.01.",
+                   "Model!=Beltrami" },
     this->Contrast, SettingRange::Positive());
   visitor.Number({ "Alpha", "",
                    "The diffusivity of CoherenceEnhancing across lines, and in all directions "
-                   "away from lines, relative to that along lines, from 1e-12 to 1." },
+                   "away from lines, relative to that along lines, from 1e-12 to 1.",
+                   "Model=CoherenceEnhancing" },
     this->Alpha, SettingRange::Between(1e-12, 1.0, "1e-12 to 1"));
   visitor.Switch({ "DiffusionAxes", "",
                    "Whether the direction of the strongest diffusion is a result, per cell.",
-                   SettingScope::Output },
+                   SettingScope::Output, "IntrinsicDelaunay=0 or DiffusionAxes=1" },
     this->DiffusionAxes);
 }
 

@@ -64,21 +64,25 @@ void TextureSettings::Visit(SettingVisitor& visitor)
   visitor.Number({ "DiffusionRate1", "h^2 ReactionRate",
                    "Diffusion rate of u1, along the direction if there is one, 0 or more, in "
                    "length^2/time (natural units: h^2 ReactionRate). With the default kinetics a "
-                   "pattern requires more than four times DiffusionRate2." },
+                   "pattern requires more than four times DiffusionRate2.",
+                   "!DiffusionRateArray" },
     this->DiffusionRate1, SettingRange::NonNegative());
   visitor.Number({ "DiffusionRate2", "h^2 ReactionRate",
                    "Diffusion rate of u2, along the direction if there is one, 0 or more, in "
-                   "length^2/time (natural units: h^2 ReactionRate)." },
+                   "length^2/time (natural units: h^2 ReactionRate).",
+                   "!DiffusionRateArray" },
     this->DiffusionRate2, SettingRange::NonNegative());
   const auto across =
     SettingRange::NonNegativeOr(-1.0, "finite numbers, 0 or more, or -1: as along");
   visitor.Number({ "DiffusionRateAcross1", "h^2 ReactionRate",
                    "Diffusion rate of u1 across the direction, 0 or more, in the unit of "
-                   "DiffusionRate1. -1: the same as along it." },
+                   "DiffusionRate1. -1: the same as along it.",
+                   "DirectionArray or DiffusionRateAcross1!=-1" },
     this->DiffusionRateAcross1, across);
   visitor.Number({ "DiffusionRateAcross2", "h^2 ReactionRate",
                    "Diffusion rate of u2 across the direction, 0 or more, in the unit of "
-                   "DiffusionRate2. -1: the same as along it." },
+                   "DiffusionRate2. -1: the same as along it.",
+                   "DirectionArray or DiffusionRateAcross2!=-1" },
     this->DiffusionRateAcross2, across);
   visitor.Number(
     { "FeatureSize", "coordinates",
@@ -91,7 +95,8 @@ void TextureSettings::Visit(SettingVisitor& visitor)
     this->FeatureSize, SettingRange::NonNegative());
   visitor.Number({ "InitialNoise", "",
                    "Half width of the uniform noise around the steady state at the start, "
-                   "relative to the steady state." },
+                   "relative to the steady state.",
+                   "!InputArray" },
     this->InitialNoise, SettingRange::NonNegative());
   visitor.Switch({ "ClampToNonNegative", "",
                    "Keep concentrations nonnegative. Without it, Turing is unstable as soon as "
@@ -120,12 +125,14 @@ void TextureSettings::Visit(SettingVisitor& visitor)
     // The parameters of kinetics that are not chosen have no effect and may be anything.
     const bool chosen = static_cast<int>(this->Kinetics) == k;
     const auto& list = GetKinetics(static_cast<KineticsName>(k)).Parameters;
+    const std::string onlyIf =
+      std::string("Kinetics=") + GetKinetics(static_cast<KineticsName>(k)).Name;
     for (std::size_t p = 0; p < list.size(); ++p)
     {
       if (list[p].Name)
       {
         visitor.Number({ list[p].Name, "", list[p].Documentation,
-                         chosen ? SettingScope::Model : SettingScope::Output },
+                         chosen ? SettingScope::Model : SettingScope::Output, onlyIf.c_str() },
           this->Parameters[static_cast<std::size_t>(k)][p],
           chosen ? RangeOf(list[p]) : SettingRange::Anything());
       }
@@ -139,11 +146,11 @@ void TextureSettings::Visit(SettingVisitor& visitor)
     this->ColorOutput);
   visitor.Numbers(
     { "LowColor", "", "Red, green and blue, from 0 to 1, for low concentrations of the chemical.",
-      SettingScope::Output },
+      SettingScope::Output, "ColorOutput=1" },
     this->LowColor, SettingRange::ClosedUnitInterval());
   visitor.Numbers(
     { "HighColor", "", "Red, green and blue, from 0 to 1, for high concentrations of the chemical.",
-      SettingScope::Output },
+      SettingScope::Output, "ColorOutput=1" },
     this->HighColor, SettingRange::ClosedUnitInterval());
 }
 

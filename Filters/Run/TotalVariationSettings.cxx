@@ -42,11 +42,16 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
         "Relative residual at which the iterative solver of a FirstOrder step stops, between 0 "
         "and 1." } } });
   this->DataSettings::Visit(reworded);
-  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, false, true, false, false });
+  VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, false, true, false, false },
+    "Mode=TimeSteps and (((EdgeFunction=TotalVariation or EdgeFunction=Charbonnier or "
+    "EdgeFunction=Constant) and AcrossEdgeFunction=Same) or TimeIntegrator=Implicit)");
   visitor.Choice({ "Mode", "",
                    "TimeSteps: NumberOfTimeSteps steps of TimeStep. SteadyState: the minimiser "
                    "of the energy, computed directly. It requires EdgeFunction TotalVariation, "
-                   "Charbonnier or Constant and AcrossEdgeFunction Same." },
+                   "Charbonnier or Constant and AcrossEdgeFunction Same.",
+                   "(BlurFWHM=0 and (((EdgeFunction=TotalVariation or EdgeFunction=Charbonnier or "
+                   "EdgeFunction=Constant) and AcrossEdgeFunction=Same) or Mode=SteadyState)) or "
+                   "(BlurFWHM!=0 and Mode=TimeSteps)" },
     this->Mode, { "TimeSteps", "SteadyState" });
   visitor.Choice({ "EdgeFunction", "",
                    "The diffusivity g(s) of s = |grad u|, where K is the edge threshold. "
@@ -60,17 +65,24 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
   across.insert(across.begin(), "Same");
   visitor.Choice({ "AcrossEdgeFunction", "",
                    "The function g of g2, across the direction: the same as EdgeFunction or "
-                   "another one. Another one requires TimeIntegrator FirstOrder." },
+                   "another one. Another one requires TimeIntegrator FirstOrder.",
+                   "(DirectionArray and (Mode=TimeSteps and TimeIntegrator=FirstOrder and "
+                   "AutomaticFidelity=0)) or AcrossEdgeFunction!=Same" },
     this->AcrossEdgeFunction, across, {});
   visitor.Number({ "Beta", "(R/h)^2",
                    "The regularisation beta of TotalVariation, above 0, in (R/h)^2. Gradients "
                    "far below its square root are smoothed as by linear diffusion. "
-                   "TimeIntegrator Implicit and Mode SteadyState do not use it." },
+                   "TimeIntegrator Implicit and Mode SteadyState do not use it.",
+                   "(EdgeFunction=TotalVariation or AcrossEdgeFunction=TotalVariation) and "
+                   "TimeIntegrator=FirstOrder and Mode=TimeSteps" },
     this->Beta, SettingRange::Positive());
-  visitor.Number({ "EdgeThreshold", "R/h",
-                   "The threshold K of the edge function, above 0, in R/h. Steeper gradients "
-                   "count as edges. 0.1 is one tenth of the range of the data between "
-                   "neighbouring points." },
+  visitor.Number(
+    { "EdgeThreshold", "R/h",
+      "The threshold K of the edge function, above 0, in R/h. Steeper gradients "
+      "count as edges. 0.1 is one tenth of the range of the data between "
+      "neighbouring points.",
+      "(EdgeFunction!=TotalVariation and EdgeFunction!=Constant) or (AcrossEdgeFunction!=Same and "
+      "AcrossEdgeFunction!=TotalVariation and AcrossEdgeFunction!=Constant)" },
     this->EdgeThreshold, SettingRange::Positive());
   visitor.Choice({ "ChannelCoupling", "",
                    "Joint: one |grad u| over all components, so that the edges of all colour "
@@ -79,13 +91,18 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
   visitor.Choice({ "FidelityNorm", "",
                    "L2: lambda (f - u), for Gaussian noise. L1: lambda (f - u)/|f - u|, for "
                    "salt-and-pepper noise: outliers are replaced and the other values keep their "
-                   "contrast. With L1 a weight of 1 to 2 is suitable." },
+                   "contrast. With L1 a weight of 1 to 2 is suitable.",
+                   "(BlurFWHM=0 and ((AutomaticFidelity=0 and ColorModel=RGB) or FidelityNorm=L1)) "
+                   "or (BlurFWHM!=0 and FidelityNorm=L1)" },
     this->FidelityNorm, { "L2", "L1" });
-  VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel);
+  VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel,
+    "(FidelityNorm=L2 and (EdgeFunction=TotalVariation or EdgeFunction=Charbonnier or "
+    "EdgeFunction=Constant) and AcrossEdgeFunction=Same) or AutomaticFidelity=1");
   visitor.Choice({ "Discretization", "",
                    "Linear: unknowns at the points, as in the paper. CrouzeixRaviart: unknowns "
                    "at the edges of the mesh, which are three times as many. It reproduces the "
-                   "heights of plateaus to a fraction of a percent." },
+                   "heights of plateaus to a fraction of a percent.",
+                   "BlurFWHM=0 or Discretization=CrouzeixRaviart" },
     this->Discretization, { "Linear", "CrouzeixRaviart" });
   visitor.Number({ "StopTolerance", "",
                    "The relative duality gap at which Mode SteadyState and each step of "
@@ -93,12 +110,14 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "difference between the energy and its minimum. With BlurFWHM it is the "
                    "change of an iteration in the range of the data, and with ColorModel "
                    "ChromaticityBrightness the relative decrease of the energy in an "
-                   "alternation." },
+                   "alternation.",
+                   "Mode=SteadyState or TimeIntegrator=Implicit" },
     this->StopTolerance, SettingRange::OpenUnitInterval());
   this->Blur.Visit(visitor);
   visitor.Switch({ "AutomaticBlurFidelity", "",
                    "On: FidelityWeight 3, its default, stands with BlurFWHM for the weight that "
-                   "AutomaticFidelity finds. Off: FidelityWeight is used as it is given." },
+                   "AutomaticFidelity finds. Off: FidelityWeight is used as it is given.",
+                   "BlurFWHM!=0 and AutomaticFidelity=0 and FidelityWeight=3" },
     this->AutomaticBlurFidelity);
   this->Color.Visit(visitor);
 }

@@ -8,6 +8,7 @@
 #include "ModelRun.h"
 #include "NewArrays.h"
 #include "PythonRuns.h"
+#include "Run/PythonNames.h"
 #include "Run/RunSettings.h"
 #include "SettingsTable.h"
 #include "ShapeFunctions.h"
@@ -92,6 +93,7 @@ NB_MODULE(_core, m)
   m.attr("InputError") = inputError;
   nb::register_exception_translator(TranslateInputError, inputError.release().ptr());
 
+  m.def("python_name", &PythonName, "name"_a);
   m.def(
     "list_settings", [](const std::string& model) { return ListSettings(*MakeSettings(model)); },
     "model"_a);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SettingsTable.h"
 
+#include "Run/PythonNames.h"
 #include "Run/Solve.h"
 
 #include <nanobind/stl/string.h>
@@ -75,6 +76,7 @@ private:
     entry["name"] = info.Name;
     entry["unit"] = info.Unit;
     entry["documentation"] = info.Documentation;
+    entry["is_of_pipelines"] = IsOfPipelines(info.Name);
     entry["is_of_output"] = info.Scope == SettingScope::Output;
     entry["kind"] = kind;
     this->Entries.append(entry);

@@ -14,6 +14,7 @@ edges_per_wavelength: float
 class InputError(ValueError):
     words: list[Word]
 
+def python_name(name: str) -> str: ...
 def list_settings(model: str) -> list[dict[str, Any]]: ...
 def find_problems(
     model: str, settings: dict[str, Any], fields: Optional[Fields]

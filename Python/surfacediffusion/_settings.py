@@ -18,12 +18,6 @@ import numpy as np
 
 from . import _core
 
-#: Settings of pipelines: an iterator over time steps needs no requests of times.
-HIDDEN = {"GenerateTimeSteps", "CheckpointMemoryLimit"}
-
-RENAMED = {"RandomSeed": "seed", "ResultOnCells": "result_on_faces", "KeepCellDetail": "keep_face_detail",
-           "UpDirection": "up"}
-
 
 @dataclass(frozen=True)
 class Setting:
@@ -103,8 +97,7 @@ def as_switch(name: str, value: Any, allowed: str = "True or False") -> bool:
 
 def snake_case(name: str) -> str:
     """The keyword of a C++ name: "NumberOfTimeSteps" is "number_of_time_steps"."""
-    words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name)
-    return RENAMED.get(name, words.lower())
+    return _core.python_name(name)
 
 
 @functools.lru_cache(maxsize=None)
@@ -112,7 +105,8 @@ def settings_of(function: str) -> dict[str, Setting]:
     """The settings of a function by keyword, in the order of C++."""
     table = {}
     for entry in _core.list_settings(function):
-        if entry["name"] not in HIDDEN:
+        # An iterator over time steps needs no requests of times.
+        if not entry.pop("is_of_pipelines"):
             for list_name in ("words", "usable"):
                 entry[list_name] = tuple(entry.get(list_name, ()))
             setting = Setting(keyword=snake_case(entry["name"]), **entry)
