@@ -4,8 +4,6 @@
 
 // The page: files, model, run, comparison. Numbers come from the engine in its worker.
 
-const $ = (id) => document.getElementById(id);
-
 /** What a model starts with where its default would refuse, or change nothing. h: the mean edge length. */
 const STARTS = {
   heat: ({ h }) => ({ fwhm: rounded(4 * h) }),
@@ -13,16 +11,9 @@ const STARTS = {
   relief: ({ size }) => ({ height: rounded(0.01 * size) }),
   harmonic_map: () => ({ move_vertices: true }),
 };
-const LARGEST_FILE = 1e9; // bytes; its surface would not fit into the memory of the engine
-
-/** What clicks add, by model: the keyword, the words, and whether each point has a value. */
-const PICKS = {
-  distance: { keyword: "sources", one: "source", words: "Click the points that distances start from.", valued: false },
-  segment: { keyword: "seeds", one: "seed", words: "Clicks mark regions, which have the numbers 1, 2, … "
-    + "Without any, the data alone decide.", valued: true },
-  interpolate: { keyword: "values", one: "value", words: "Clicks give measured values, in place of the data. "
-    + "Of data without gaps, values at 200 points are taken.", valued: true },
-};
+const LARGEST_FILE = 5e8; // bytes; readers take four times as much
+/** Names of files that have values and no surface. */
+const VALUES = /\.((csv|txt|tsv|mgh|mgz|label|annot|(func|shape|label)\.gii)(\.gz)?)$|(^|\/)[lr]h\.(thickness|curv|sulc|area|volume)[^/]*$/i;
 
 const rounded = (x) => Number(x.toPrecision(3));
 const plural = (count, word) => `${count.toLocaleString("en")} ${word}${count === 1 ? "" : "s"}`;
@@ -34,10 +25,10 @@ class Page {
     this.client = new EngineClient((fraction) => { $("progress").value = fraction; });
     this.mesh = null;
     this.result = null;
-    this.picks = []; // [{point, value}]
     this.runs = 0;
     this.controls = new Controls($("settings"), $("more-settings"), () => $("units").value);
-    this.view = new SurfaceView($("view"), (place) => this.pick(place));
+    this.comparison = new Comparison((place) => this.pick(place));
+    this.picks = new Picks((marks) => this.comparison.view.setMarks(marks));
     this.ready = this.client.call("describe").then(({ models }) => {
       this.models = models;
       $("model").append(...models.map(({ name, title }) => makeElement("option",
@@ -47,7 +38,6 @@ class Page {
     });
     this.ready.catch((problem) => this.say(problem.message, "error"));
     this.listen();
-    this.setTheme();
   }
 
   get model() { return this.models.find(({ name }) => name === $("model").value); }
@@ -62,23 +52,11 @@ class Page {
     on("controls", "submit", (event) => { event.preventDefault(); this.apply(); });
     on("model", "change", () => this.chooseModel());
     on("array", "change", () => { this.showControls(); this.attempt(this.showBefore()); });
-    on("units", "change", () => { this.showControls(); this.showSides(); });
-    on("cancel", "click", () => this.client.cancel());
+    on("units", "change", () => { this.showControls(); this.comparison.update(); });
+    on("cancel", "click", () => this.cancel());
     on("download", "click", () => this.attempt(this.download()));
     on("continue", "click", () => this.attempt(this.goOn()));
-    on("clear-picks", "click", () => { this.picks = []; this.showPicks(); });
     on("shown", "change", () => this.attempt(this.showResult()));
-    on("lines", "change", () => { this.lines = $("lines").checked; this.showSides(); });
-    ["low", "high"].forEach((id) => on(id, "change", () => this.showSides()));
-    on("look", "change", () => {
-      if ($("look").value && this.mesh) {
-        const [from, up] = $("look").value.split(";").map((text) => text.split(",").map(Number));
-        this.view.lookFrom(from, up);
-      }
-      $("look").value = "";
-    });
-    on("reset", "click", () => this.view.resetCamera());
-    on("picture", "click", () => this.savePicture());
     on("time", "input", () => this.showTime());
     const over = (event) => {
       event.preventDefault();
@@ -86,15 +64,6 @@ class Page {
     };
     ["dragover", "dragleave", "drop"].forEach((name) => window.addEventListener(name, over));
     window.addEventListener("drop", (event) => this.openFiles([...event.dataTransfer.files]));
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.setTheme());
-    new ResizeObserver(() => this.placePanes()).observe($("frame"));
-  }
-
-  setTheme() {
-    const colour = getComputedStyle($("stage")).backgroundColor.match(/\d+/g).map((x) => x / 255);
-    this.view.background = colour.slice(0, 3);
-    this.view.redraw();
-    this.drawBars();
   }
 
   /** kind: "error" or "". further: lines below it. */
@@ -124,11 +93,12 @@ class Page {
 
   /** Surfaces come before the values at their points, whatever the order in which they were dropped. */
   async openFiles(files) {
-    const problems = [];
-    let opened = false, rest = files;
-    for (let round = 0; round < 2 && rest.length; ++round) {
-      const left = [];
-      for (const file of rest) {
+    let left = [...files].sort((a, b) => VALUES.test(a.name) - VALUES.test(b.name)), problems = [];
+    for (let opened = true; opened && left.length;) { // values may have to wait for their surface
+      const failed = [];
+      problems = [];
+      opened = false;
+      for (const file of left) {
         try {
           if (file.size > LARGEST_FILE) {
             throw new Error(`${file.name} has ${plural(Math.round(file.size / 1e6), "megabyte")}; allowed: `
@@ -137,16 +107,14 @@ class Page {
           await this.open(file.name, await file.arrayBuffer());
           opened = true;
         } catch (problem) {
-          left.push(file);
-          if (round === 1 || files.length === 1 || !opened) { problems.push([file, problem.message]); }
+          failed.push(file);
+          problems.push(problem.message);
         }
       }
-      rest = files.length > 1 && opened ? left : [];
+      opened = opened && failed.length < left.length;
+      left = failed;
     }
-    const failed = problems.filter(([file]) => rest.length === 0 || rest.includes(file)).map(([, text]) => text);
-    if (problems.length && !(files.length > 1 && rest.length === 0 && opened)) {
-      this.say([...new Set(failed)].join("\n"), "error");
-    }
+    if (left.length) { this.say([...new Set(problems)].join("\n"), "error"); }
   }
 
   /** Opens a file, as by dropping it. Returns what it has. */
@@ -156,13 +124,13 @@ class Page {
     this.say(`Reading ${name} …`);
     const opened = await this.client.open(name, bytes);
     if (opened.isSame && this.mesh) {
-      this.mesh.arrays = opened.arrays.map((array) => ({ ...arrayNamed(this.mesh.arrays, array.name), ...array }));
+      this.mesh.arrays = opened.arrays.map((array) => ({ ...array }));
     } else {
       this.mesh = { name, points: opened.coordinates, triangles: opened.triangles,
         cells: opened.cellOfTriangle, arrays: opened.arrays.map((array) => ({ ...array })) };
       this.result = null;
       this.file = null;
-      this.picks = [];
+      this.picks.choose(this.model.name);
       Object.assign(this.mesh, measure(this.mesh)); // h, extent, size, own
       $("units").value = opened.unit || unit;
       $("units-row").hidden = false;
@@ -201,87 +169,28 @@ class Page {
   chooseModel() {
     const { name } = this.model;
     $("model-help").textContent = (PANELS[name] || { help: "" }).help;
-    this.picks = [];
+    this.picks.choose(name);
     if (this.mesh) {
       this.offerArrays(null);
       this.attempt(this.showBefore());
     } else {
       this.showControls();
     }
-    this.showPicks();
+  }
+
+  /** A click: for some models an input. */
+  pick(place) {
+    if (place && this.comparison.sides[place.side].on.triangles === this.mesh.triangles) {
+      this.attempt((async () => this.picks.add(place.point))());
+    }
   }
 
   showControls() {
     const { model } = this, start = this.mesh && STARTS[model.name] ? STARTS[model.name](this.mesh) : {};
     const array = this.mesh && arrayNamed(this.mesh.arrays, $("array").value);
     this.controls.association = array ? array.association : "point";
+    this.controls.hasData = Boolean($("array").value);
     this.controls.show(model, this.mesh ? this.mesh.arrays : [], start);
-  }
-
-  showPicks() {
-    const kind = PICKS[this.model.name];
-    $("picks").hidden = !kind;
-    $("clear-picks").hidden = !this.picks.length;
-    $("pick-value-row").hidden = !kind || !kind.valued;
-    if (kind) {
-      $("picks-help").textContent = kind.words;
-      $("pick-list").replaceChildren(...this.picks.map((pick, i) => makeElement("li", {},
-        `Point ${pick.point}${kind.valued ? `: ${shortNumber(pick.value)}` : ""}`,
-        makeElement("button", { type: "button", textContent: "Remove", ariaLabel: `Remove point ${pick.point}`,
-          onclick: () => { this.picks.splice(i, 1); this.showPicks(); } }))));
-    }
-    this.view.setMarks(this.picks.map(({ point, value }) => ({ point,
-      colour: kind && kind.keyword === "seeds" ? LABELS[(value - 1 + 12) % 12].map((x) => x / 255) : [0.8, 0.1, 0.2] })));
-  }
-
-  /** A click: the value there, and for some models an input. */
-  pick(place) {
-    if (!place) {
-      $("readout").textContent = "There is no surface at this place.";
-      return;
-    }
-    const side = this.view.sides[place.side], at = [0, 1, 2].map((axis) => shortNumber(side.points[3 * place.point + axis]));
-    const words = [`Point ${place.point} at (${at.join(", ")})`];
-    this.shownArrays().forEach(({ array, title, on }) => { // a refined surface has other triangles
-      if (array && on.triangles === side.triangles) { words.push(`${title}: ${this.valueAt(array, place, on)}`); }
-    });
-    $("readout").textContent = words.join(" · ");
-    const kind = PICKS[this.model.name];
-    if (kind && side.triangles === this.mesh.triangles) {
-      const value = Number($("pick-value").value.replace("−", "-").replace(",", "."));
-      if (kind.valued && !Number.isFinite(value)) {
-        this.say(`The value of the next click is “${$("pick-value").value}”; allowed: a number.`, "error");
-        return;
-      }
-      this.picks = [...this.picks.filter(({ point }) => point !== place.point), { point: place.point, value }];
-      this.showPicks();
-    }
-  }
-
-  valueAt(array, { triangle, point, shares }, { triangles, cells }) {
-    const { components, values } = array;
-    const numbers = [];
-    for (let c = 0; c < components; ++c) {
-      if (array.association === "cell") {
-        numbers.push(values[components * cells[triangle] + c]);
-      } else if (isLabels(values, array.name)) {
-        numbers.push(values[components * point + c]);
-      } else {
-        numbers.push(shares.reduce((sum, share, k) =>
-          sum + share * values[components * triangles[3 * triangle + k] + c], 0));
-      }
-    }
-    const unit = this.unitOf(array.name);
-    return numbers.map(shortNumber).join(", ") + (unit && ` ${unit}`);
-  }
-
-  /** The unit of an array; empty if it is not known. */
-  unitOf(name) {
-    const unit = $("units").value;
-    if (!unit) { return ""; }
-    if (/gauss.*curvature/i.test(name)) { return `1/${unit}²`; }
-    if (/curvature/i.test(name)) { return `1/${unit}`; }
-    return /distance|displacement|thickness|sulc|height/i.test(name) ? unit : "";
   }
 
   // ---- runs -------------------------------------------------------------------------------------
@@ -289,13 +198,13 @@ class Page {
   /** The options of the form, with what a first run needs and does not have yet; notes say what. */
   options() {
     const notes = [], options = { ...this.controls.read() }, { model, mesh } = this;
-    const name = $("array").value, kind = PICKS[model.name];
+    const name = $("array").value;
     if (model.data && name) {
       options.array = name;
       options.association = (arrayNamed(mesh.arrays, name) || { association: "point" }).association;
     }
-    if (kind && this.picks.length) {
-      Object.assign(options, this.pickedInputs(kind));
+    if (this.picks.list.length) {
+      Object.assign(options, this.picks.inputs());
     } else if (model.name === "distance" && !name) {
       const point = highest(mesh.points);
       options.sources = [point];
@@ -303,7 +212,7 @@ class Page {
     } else if (model.name === "interpolate") {
       const array = arrayNamed(mesh.arrays, name);
       if (array && array.values && array.association === "point" && !array.values.some(Number.isNaN)) {
-        Object.assign(options, this.sampled(array));
+        options.values = sampled(array);
         notes.push("The data have no gaps: the values at 200 points are given, and those between them are found.");
       }
     }
@@ -311,17 +220,6 @@ class Page {
       notes.push(`The width, FWHM, is ${options.fwhm} ${$("units").value}, four mean edge lengths.`.replace(" ,", ","));
     }
     return { options, notes };
-  }
-
-  pickedInputs(kind) {
-    const points = this.picks.map(({ point }) => point), values = this.picks.map(({ value }) => value);
-    return kind.valued ? { [kind.keyword]: { points, values } } : { [kind.keyword]: points };
-  }
-
-  sampled({ values, components }) {
-    const count = values.length / components, step = Math.max(1, count / 200), points = [];
-    for (let i = 0.5 * step; i < count; i += step) { points.push(Math.floor(i)); }
-    return { values: { points, values: points.map((p) => values[components * p]) } };
   }
 
   async apply() {
@@ -365,7 +263,7 @@ class Page {
     }
     if (mesh !== this.mesh) { throw new Cancelled("Another file has been opened."); }
     const moved = found.coordinates && mesh.points.some((x, i) => x !== found.coordinates[i]);
-    this.result = { ...found, model, options, input: options.array || "", points: found.coordinates,
+    this.result = { ...found, model, options, input: options.array || "", points: found.coordinates || mesh.points,
       triangles: found.resultTriangles || mesh.triangles, cells: found.resultCellOfTriangle || mesh.cells };
     this.saveLater();
     const names = found.arrays.map(({ name }) => name);
@@ -381,6 +279,13 @@ class Page {
     return { arrays: Object.fromEntries(found.arrays.map(({ name, values }) => [name, values])),
       points: found.coordinates, history: found.history, numbers: found.numbers, times: found.times,
       warnings: found.warnings };
+  }
+
+  /** The file of the former result is made before the run, in the worker that ends here: it gets 0.8 s. */
+  async cancel() {
+    const bytes = this.file ? this.file.bytes.catch(() => {}) : null;
+    await Promise.race([bytes, new Promise((done) => { setTimeout(done, 800); })]);
+    if (this.running) { this.client.cancel(); }
   }
 
   enable() {
@@ -502,92 +407,9 @@ class Page {
   }
 
   showSides(frame = false) {
-    if (!this.mesh) { return; }
-    const { mesh, result } = this, arrays = this.shownArrays();
-    this.setRanges(arrays.map(({ array }) => array && array.shown));
-    const sides = arrays.map(({ array, on }, i) => ({ triangles: on.triangles, values: array && array.shown,
-      points: i === 1 && result.points ? result.points : mesh.points }));
-    this.view.show(sides, frame);
-    this.placePanes();
-  }
-
-  /** The same colours before and after if the result is the same quantity; given limits win. */
-  setRanges([before, after]) {
-    const automatic = (shown) => {
-      const { first, last } = shown.extent;
-      return shown.signed ? symmetric(first, last) : [first, last];
-    };
-    const plain = (shown) => shown && !shown.colours;
-    [before, after].filter(plain).forEach((shown) => setRange(shown, automatic(shown)));
-    const width = plain(before) ? before.extent.last - before.extent.first : 0;
-    const shares = plain(before) && plain(after) && !after.labels && !before.labels && width > 0
-      && this.result.model !== "derivatives" && after.extent.first >= before.extent.first - 0.3 * width
-      && after.extent.last <= before.extent.last + 0.3 * width
-      && after.extent.last - after.extent.first > 0.02 * width
-      && $("shown").value.startsWith(this.result.input || "\n");
-    if (shares) {
-      after.signed = before.signed;
-      setRange(after, before.limits);
-    }
-    const target = plain(after) ? after : before, numbers = ["low", "high"].map((id, i) => {
-      const text = $(id).value.trim().replace("−", "-"), given = Number(text.replace(",", "."));
-      if (plain(target)) { $(id).placeholder = shortNumber(target.limits[i]); }
-      return text && Number.isFinite(given) ? given : null;
-    });
-    if (numbers.some((x) => x !== null)) {
-      [before, after].filter((shown) => plain(shown) && (shown === target || shares)).forEach((shown) =>
-        setRange(shown, shown.limits.map((x, i) => (numbers[i] === null ? x : numbers[i]))));
-    }
-    const isDistance = /distance|arrival/i.test($("shown").value) && Boolean(this.result);
-    const lines = this.lines === undefined ? isDistance : this.lines;
-    $("lines").checked = lines;
-    [before, after].filter(plain).forEach((shown) => {
-      shown.interval = lines && !shown.labels ? roundInterval(shown.limits[1] - shown.limits[0]) : 0;
-    });
-  }
-
-  placePanes() {
-    if (!this.mesh) { return; }
-    const ratio = window.devicePixelRatio || 1, height = $("frame").clientHeight;
-    this.view.resize();
-    this.view.redraw();
-    [0, 1].forEach((i) => {
-      const pane = $(`pane-${i}`);
-      pane.hidden = i >= this.view.sides.length;
-      const port = this.view.viewport(i);
-      Object.assign(pane.style, { left: `${port.x / ratio}px`, width: `${port.width / ratio}px`,
-        top: `${height - (port.y + port.height) / ratio}px` });
-    });
-    this.drawBars();
-  }
-
-  drawBars() {
-    if (!this.mesh) { return; }
-    this.shownArrays().forEach(({ array, title }, i) => {
-      const canvas = $(`pane-${i}`).firstElementChild, ratio = window.devicePixelRatio || 1;
-      const unit = array ? this.unitOf(array.name) : "", name = title + (unit && ` (${unit})`);
-      Object.assign(canvas, { width: 230 * ratio, height: 50 * ratio });
-      const context = canvas.getContext("2d");
-      context.scale(ratio, ratio);
-      const shown = array && array.shown;
-      drawBar(context, { x: 2, y: 0, width: 226, title: name, shown, colour: getComputedStyle($("stage")).color });
-      canvas.setAttribute("aria-label", shown && !shown.colours
-        ? `${i ? "After" : "Before"}: ${name} from ${shown.limits.map(shortNumber).join(" to ")}` : name || "Surface");
-    });
-  }
-
-  /** The view with its bars as PNG. */
-  savePicture() {
-    if (!this.mesh) { return; }
-    this.view.draw();
-    const canvas = makeElement("canvas", { width: $("view").width, height: $("view").height });
-    const context = canvas.getContext("2d");
-    context.drawImage($("view"), 0, 0);
-    this.view.sides.forEach((_, i) => {
-      const port = this.view.viewport(i), bar = $(`pane-${i}`).firstElementChild, ratio = window.devicePixelRatio || 1;
-      context.drawImage(bar, port.x + 14 * ratio, canvas.height - port.y - port.height + 11 * ratio);
-    });
-    canvas.toBlob((blob) => save(`${this.mesh.name.replace(/\.[^.]*$/, "")}.png`, blob), "image/png");
+    const { mesh, result } = this, isSame = Boolean(result) && result.model !== "derivatives"
+      && $("shown").value.startsWith(result.input || "\n");
+    if (mesh) { this.comparison.show(this.shownArrays(), mesh.name, isSame, frame); }
   }
 }
 
@@ -596,6 +418,13 @@ function mainResult(names, input) {
   const ofData = input && names.find((name) => name.startsWith(input) && name !== input);
   const wanted = [/^texture$/i, /region/i, /^(distance|arrivaltime)$/i, /meancurvature/i, /^mean$/i, /direction/i];
   return ofData || wanted.map((pattern) => names.find((name) => pattern.test(name))).find(Boolean) || names[0] || "";
+}
+
+/** Values at 200 of the points. */
+function sampled({ values, components }) {
+  const count = values.length / components, step = Math.max(1, count / 200), points = [];
+  for (let i = 0.5 * step; i < count; i += step) { points.push(Math.floor(i)); }
+  return { points, values: points.map((p) => values[components * p]) };
 }
 
 /** Mean edge length, size and extent of a mesh. */
@@ -623,51 +452,6 @@ function highest(points) {
     if (points[i] > points[best]) { best = i; }
   }
   return (best - 2) / 3;
-}
-
-function save(name, blob) {
-  const link = makeElement("a", { href: URL.createObjectURL(blob), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-}
-
-/** A rough pebble with noisy stripes as the text of a PLY file, so that there is something to try at once. */
-function pebble() {
-  const rings = 70, around = 140, lines = [], faces = [];
-  let seed = 1;
-  const noise = () => { // sums of four even random numbers, near to normal ones
-    let sum = -2;
-    for (let k = 0; k < 4; ++k) {
-      seed = (1103515245 * seed + 12345) % 2147483648;
-      sum += seed / 2147483648;
-    }
-    return 1.7 * sum;
-  };
-  const add = (polar, angle) => {
-    const [x, y, z] = [Math.sin(polar) * Math.cos(angle), Math.sin(polar) * Math.sin(angle), Math.cos(polar)];
-    const radius = 10 + Math.sin(3 * x) * Math.cos(2 * y) + 1.5 * y * z + 0.02 * noise();
-    const wave = Math.sin(4 * x + 2 * y * z) + 0.6 * z;
-    const stripe = (wave > -0.4) + (wave > 0.5) + 0.2 * noise();
-    lines.push([x, y, z].map((c) => (radius * c).toFixed(4)).concat(stripe.toFixed(3)).join(" "));
-  };
-  add(0, 0);
-  for (let r = 1; r < rings; ++r) {
-    for (let a = 0; a < around; ++a) { add(Math.PI * r / rings, 2 * Math.PI * (a + 0.5 * (r % 2)) / around); }
-  }
-  add(Math.PI, 0);
-  const id = (r, a) => 1 + (r - 1) * around + (a + around) % around, end = lines.length - 1;
-  for (let a = 0; a < around; ++a) {
-    faces.push(`3 0 ${id(1, a)} ${id(1, a + 1)}`, `3 ${end} ${id(rings - 1, a + 1)} ${id(rings - 1, a)}`);
-    for (let r = 1; r < rings - 1; ++r) {
-      const s = r % 2; // odd rings are turned by half a step
-      faces.push(s ? `3 ${id(r, a)} ${id(r + 1, a)} ${id(r + 1, a + 1)}` : `3 ${id(r, a)} ${id(r + 1, a)} ${id(r, a + 1)}`,
-        s ? `3 ${id(r, a)} ${id(r + 1, a + 1)} ${id(r, a + 1)}` : `3 ${id(r, a + 1)} ${id(r + 1, a)} ${id(r + 1, a + 1)}`);
-    }
-  }
-  const head = ["ply", "format ascii 1.0", `element vertex ${lines.length}`, "property double x", "property double y",
-    "property double z", "property double stripes", `element face ${faces.length}`,
-    "property list uchar int vertex_indices", "end_header"];
-  return new TextEncoder().encode([...head, ...lines, ...faces, ""].join("\n")).buffer;
 }
 
 const page = new Page();

@@ -35,7 +35,7 @@ def save_scene(path, panels, columns, title):
     packed = base64.b64encode(gzip.compress(b"".join(arrays), mtime=0)).decode()
     scene = json.dumps({"columns": columns, "panels": described, "packed": packed}).replace("<", "\\u003c")
     text = (VIEWER / "scene" / "scene.html").read_text()
-    for name in ("unpack.js", "view.js", "scene/scene.js"):
+    for name in ("unpack.js", "shaders.js", "camera.js", "view.js", "scene/scene.js"):
         text = text.replace(f'<script src="{name}"></script>', f"<script>\n{(VIEWER / name).read_text()}</script>")
     text = text.replace("@title@", html.escape(title)).replace("@scene@", scene)
     Path(path).write_text(text)

@@ -21,7 +21,8 @@ async function showScene({ columns, panels, packed }) {
     triangles: take(Uint32Array, 3 * triangles), values: { association: "point", colours: true, range: [0, 1],
       numbers: Float32Array.from(take(Uint8Array, 3 * points), (x) => x / 255), map: new Uint8Array(4) } }));
   const view = new SurfaceView(document.querySelector("canvas"), () => {});
-  Object.assign(view, { columns, home: [[0, 0, 1], [0, 1, 0]], bars: 28 });
+  view.columns = columns;
+  Object.assign(view.camera, { home: [[0, 0, 1], [0, 1, 0]], bars: 28 });
   const rows = Math.ceil(panels.length / columns);
   const all = new Float32Array(sides.reduce((sum, { points }) => sum + points.length, 0));
   sides.reduce((end, { points }) => { all.set(points, end); return end + points.length; }, 0);

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+// SPDX-License-Identifier: BSD-3-Clause
+"use strict";
+
+/** What clicks add, by model: the keyword, the words, and whether each point has a value. */
+const PICKS = {
+  distance: { keyword: "sources", one: "source", words: "Click the points that distances start from.", valued: false },
+  segment: { keyword: "seeds", one: "seed", words: "Clicks mark regions, which have the numbers 1, 2, … "
+    + "Without any, the data alone decide.", valued: true },
+  interpolate: { keyword: "values", one: "value", words: "Clicks give measured values, in place of the data. "
+    + "Of data without gaps, values at 200 points are taken.", valued: true },
+};
+
+/** The points that were clicked for a model, with their values, and the part of the form that lists them. */
+class Picks {
+  /** setMarks([{point, colour}]): shows them on the surface. */
+  constructor(setMarks) {
+    this.setMarks = setMarks;
+    this.list = []; // [{point, value}]
+    $("clear-picks").addEventListener("click", () => this.set([]));
+  }
+
+  choose(model) {
+    this.kind = PICKS[model];
+    this.set([]);
+  }
+
+  /** Throws an error if the value of the form is none. */
+  add(point) {
+    if (!this.kind) { return; }
+    const text = $("pick-value").value, value = Number(text.replace("−", "-").replace(",", "."));
+    const isLabel = this.kind.keyword === "seeds";
+    if (this.kind.valued && !(isLabel ? Number.isInteger(value) && value > 0 : text.trim() && Number.isFinite(value))) {
+      throw new Error(`The value of the next click is “${text}”; allowed: ${isLabel ? "1, 2, …" : "a number"}.`);
+    }
+    this.set([...this.list.filter((pick) => pick.point !== point), { point, value }]);
+  }
+
+  set(list) {
+    const { kind } = this;
+    this.list = list;
+    $("picks").hidden = !kind;
+    $("clear-picks").hidden = !list.length;
+    $("pick-value-row").hidden = !kind || !kind.valued;
+    $("picks-help").textContent = kind ? kind.words : "";
+    $("pick-list").replaceChildren(...list.map((pick) => makeElement("li", {},
+      `Point ${pick.point}${kind.valued ? `: ${shortNumber(pick.value)}` : ""}`,
+      makeElement("button", { type: "button", textContent: "Remove", ariaLabel: `Remove point ${pick.point}`,
+        onclick: () => this.set(this.list.filter((other) => other !== pick)) }))));
+    this.setMarks(list.map(({ point, value }) => ({ point,
+      colour: kind.keyword === "seeds" ? LABELS[(value - 1) % LABELS.length].map((x) => x / 255) : [0.8, 0.1, 0.2] })));
+  }
+
+  /** As arguments of the model. */
+  inputs() {
+    const points = this.list.map(({ point }) => point), values = this.list.map(({ value }) => value);
+    return { [this.kind.keyword]: this.kind.valued ? { points, values } : points };
+  }
+}
