@@ -63,11 +63,6 @@ std::string Open(const std::string& name, const val& bytes)
     });
 }
 
-std::string Keep()
-{
-  return Guarded([] { return TheEngine().Keep(); });
-}
-
 std::string RunModel(const std::string& model, const std::string& json)
 {
   return Guarded(
@@ -164,6 +159,5 @@ EMSCRIPTEN_BINDINGS(engine)
   emscripten::function("resultPoints", &GetResultPoints);
   emscripten::function("resultTriangles", &GetResultTriangles);
   emscripten::function("resultCellOfTriangle", &GetResultCellOfTriangle);
-  emscripten::function("keep", &Keep);
   emscripten::function("write", &WriteSurface);
 }

@@ -374,12 +374,6 @@ Files::SurfaceFile Engine::WithResults() const
   return file;
 }
 
-std::string Engine::Keep()
-{
-  this->TakeSurface(this->WithResults());
-  return this->Describe();
-}
-
 Files::Bytes Engine::Write(const std::string& name) const
 {
   Files::SurfaceFile file = this->WithResults();

@@ -38,8 +38,6 @@ public:
   /// what there is as JSON.
   std::string Run(const std::string& model, const emscripten::val& given,
     const ProgressMonitor::Callback& progress);
-  /// Make the surface with the results of the last run that of the next ones. Returns as Open().
-  std::string Keep();
   /// The surface with the results, in the format that the name ends in. A pattern is its colours, too.
   Files::Bytes Write(const std::string& name) const;
 

@@ -27,6 +27,7 @@ class Camera {
   constructor() {
     this.bars = 60; // CSS pixels above the surface, for titles and colour bars
     this.home = null; // [from, up] of the first view; null: by the shape of the surface
+    this.usual = [[0.55, -1, 0.55]]; // that of shapes that are not flat
     this.turn = null; // rows: right, up and towards the camera; null: nothing is framed
     this.pivot = [0, 0, 0];
   }
@@ -36,7 +37,7 @@ class Camera {
 
   scaled(points, i) { return [0, 1, 2].map((axis) => (points[i + axis] - this.middle[axis]) / this.size); }
 
-  /** Frames the points: three quarters from above, or onto the plane of what is flat. */
+  /** Frames the points: as usual, or onto the plane of what is flat. */
   frame(points, port) {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     for (let i = 0; i < points.length; ++i) {
@@ -53,9 +54,8 @@ class Camera {
 
   reset(port) {
     const smallest = Math.min(...this.extent), flat = this.extent.indexOf(smallest);
-    const from = smallest > 0.08 * this.size ? [0.55, -1, 0.55] : [0, 1, 2].map((axis) =>
-      axis === flat ? (axis === 1 ? -1 : 1) : axis === 1 ? -0.35 : 0.25);
-    this.lookFrom(port, ...(this.home || [from]));
+    const onto = [0, 1, 2].map((axis) => (axis === flat ? (axis === 1 ? -1 : 1) : axis === 1 ? -0.35 : 0.25));
+    this.lookFrom(port, ...(this.home || (smallest > 0.08 * this.size ? this.usual : [onto])));
   }
 
   /** from: the direction to the camera. up: by default z, or y where that is the view's direction. */
@@ -71,17 +71,18 @@ class Camera {
   fit({ width, height }) {
     const aspect = width / Math.max(height, 1), points = this.framed;
     const free = Math.max(0.5, 1 - this.bars * (window.devicePixelRatio || 1) / Math.max(height, 1)); // below the bars
-    const step = 3 * Math.max(1, Math.trunc(points.length / 300000)), seen = [];
-    for (let i = 0; i < points.length; i += step) {
+    const step = 3 * Math.max(1, Math.trunc(points.length / 300000));
+    const seen = new Float64Array(3 * Math.ceil(points.length / step)), extent = [[9, -9], [9, -9], [9, -9]];
+    for (let i = 0, k = 0; i < points.length; i += step) {
       const [x, y, z] = this.scaled(points, i);
-      this.turn.forEach((row) => seen.push(row[0] * x + row[1] * y + row[2] * z));
+      for (let row = 0; row < 3; ++row, ++k) {
+        const [a, b, c] = this.turn[row], range = extent[row], value = a * x + b * y + c * z;
+        seen[k] = value;
+        if (value < range[0]) { range[0] = value; }
+        if (value > range[1]) { range[1] = value; }
+      }
     }
-    const extent = [[9, -9], [9, -9]];
-    seen.forEach((value, i) => {
-      const range = extent[i % 3];
-      if (range) { [range[0], range[1]] = [Math.min(range[0], value), Math.max(range[1], value)]; }
-    });
-    this.aim = extent.map(([low, high]) => 0.5 * (low + high));
+    this.aim = extent.slice(0, 2).map(([low, high]) => 0.5 * (low + high));
     const tangent = 0.5 * FIELD_OF_VIEW;
     this.distance = 0.05;
     for (let i = 0; i < seen.length; i += 3) {

@@ -168,7 +168,7 @@ function unitOf(name) {
   if (!unit) { return ""; }
   if (/gauss.*curvature/i.test(name)) { return `1/${unit}²`; }
   if (/curvature/i.test(name)) { return `1/${unit}`; }
-  return /distance|displacement|thickness|sulc|height/i.test(name) ? unit : "";
+  return /distance|displacement|thick|sulc|height/i.test(name) ? unit : "";
 }
 
 function save(name, blob) {

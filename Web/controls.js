@@ -140,7 +140,7 @@ class Controls {
     if (unit === "coordinates") { unit = this.unit(); }
     const label = makeElement("label", { htmlFor: input.id },
       entry.label || wordsOf(field.property).replace(/ array$/, ""),
-      ...(unit && unit !== "1" ? [makeElement("small", { textContent: ` ${unit}` })] : []));
+      ...(unit && unit !== "1" && unit !== "time" ? [makeElement("small", { textContent: ` ${unit}` })] : []));
     field.row = makeElement("div", { className: input.type === "checkbox" ? "row switch" : "row" },
       label, input, help);
     return field.row;

@@ -117,8 +117,8 @@ class Page {
     if (left.length) { this.say([...new Set(problems)].join("\n"), "error"); }
   }
 
-  /** Opens a file, as by dropping it. Returns what it has. */
-  async open(name, bytes, unit = "") {
+  /** Opens a file, as by dropping it. former: name, unit and kind of that which it is made of. Returns what it has. */
+  async open(name, bytes, former = {}) {
     await this.ready;
     const start = performance.now();
     this.say(`Reading ${name} …`);
@@ -126,13 +126,16 @@ class Page {
     if (opened.isSame && this.mesh) {
       this.mesh.arrays = opened.arrays.map((array) => ({ ...array }));
     } else {
-      this.mesh = { name, points: opened.coordinates, triangles: opened.triangles,
-        cells: opened.cellOfTriangle, arrays: opened.arrays.map((array) => ({ ...array })) };
+      this.mesh = { name: former.name || name, kind: former.kind || opened.kind, points: opened.coordinates, triangles: opened.triangles,
+        cells: opened.cellOfTriangle, h: opened.meanEdgeLength || 1, arrays: opened.arrays.map((array) => ({ ...array })) };
       this.result = null;
       this.file = null;
       this.picks.choose(this.model.name);
-      Object.assign(this.mesh, measure(this.mesh)); // h, extent, size, own
-      $("units").value = opened.unit || unit;
+      Object.assign(this.mesh, measure(this.mesh, this.mesh.kind)); // extent, size, own, view
+      this.comparison.view.camera.usual = this.mesh.view;
+      this.series = null;
+      $("times").hidden = true;
+      $("units").value = opened.unit || former.unit || "";
       $("units-row").hidden = false;
       document.body.classList.add("loaded");
       ["low", "high"].forEach((id) => { $(id).value = ""; });
@@ -206,9 +209,9 @@ class Page {
     if (this.picks.list.length) {
       Object.assign(options, this.picks.inputs());
     } else if (model.name === "distance" && !name) {
-      const point = highest(mesh.points);
+      const point = highest(mesh);
       options.sources = [point];
-      notes.push(`The distance is that from the highest point, ${point}. Clicks choose others.`);
+      notes.push(`The distance is that from the point ${point}, the highest one. Clicks choose others.`);
     } else if (model.name === "interpolate") {
       const array = arrayNamed(mesh.arrays, name);
       if (array && array.values && array.association === "point" && !array.values.some(Number.isNaN)) {
@@ -318,8 +321,8 @@ class Page {
   /** The result as the next input: its arrays are data, and its points those of the surface. */
   async goOn() {
     const bytes = await this.client.call("write", "result.vtp");
-    const { name } = this.mesh, shown = $("shown").value, unit = $("units").value;
-    await this.open(name.replace(/(\.[^.]*)?$/, ".vtp"), bytes.buffer, unit);
+    const { name, kind } = this.mesh, shown = $("shown").value;
+    await this.open(name.replace(/(\.[^.]*)?$/, ".vtp"), bytes.buffer, { name, kind, unit: $("units").value });
     if (arrayNamed(this.mesh.arrays, shown)) {
       this.offerArrays(shown);
       await this.showBefore();
@@ -416,8 +419,8 @@ class Page {
 /** The result that is shown first: that of the data, or the one that the model is named for. */
 function mainResult(names, input) {
   const ofData = input && names.find((name) => name.startsWith(input) && name !== input);
-  const wanted = [/^texture$/i, /region/i, /^(distance|arrivaltime)$/i, /meancurvature/i, /^mean$/i, /direction/i];
-  return ofData || wanted.map((pattern) => names.find((name) => pattern.test(name))).find(Boolean) || names[0] || "";
+  const wanted = [/^texture$/i, /^(distance|arrivaltime)$/i, /meancurvature/i, /^mean$/i, /direction/i];
+  return names.find((name) => name === "RegionId") || ofData || wanted.map((pattern) => names.find((name) => pattern.test(name))).find(Boolean) || names[0] || "";
 }
 
 /** Values at 200 of the points. */
@@ -427,31 +430,30 @@ function sampled({ values, components }) {
   return { points, values: points.map((p) => values[components * p]) };
 }
 
-/** Mean edge length, size and extent of a mesh. */
-function measure({ points, triangles }) {
+/**
+ * Size, extent, a coordinate as the data of a mesh that has none, and the view from three quarters above:
+ * y is up in scans, z in parts to print and in brains, which are seen from outside.
+ */
+function measure({ points }, kind) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < points.length; ++i) {
     low[i % 3] = Math.min(low[i % 3], points[i]);
     high[i % 3] = Math.max(high[i % 3], points[i]);
   }
-  let sum = 0;
-  for (let i = 0; i < triangles.length; ++i) {
-    const a = 3 * triangles[i], b = 3 * triangles[i % 3 === 2 ? i - 2 : i + 1];
-    sum += Math.hypot(points[a] - points[b], points[a + 1] - points[b + 1], points[a + 2] - points[b + 2]);
-  }
-  const extent = high.map((x, axis) => x - low[axis]);
-  const size = Math.max(...extent), axis = extent[2] > 1e-3 * size ? 2 : extent.indexOf(size);
-  // The data of a mesh that has none: a coordinate
-  const own = { name: axis === 2 ? "Height" : `Coordinate_${"xy"[axis]}`, axis };
-  return { h: sum / triangles.length || 1, extent, size, own };
+  const extent = high.map((x, axis) => x - low[axis]), size = Math.max(...extent);
+  const isScan = /OBJ|OFF|PLY/.test(kind), isBrain = /GIFTI|FreeSurfer/.test(kind), up = isScan ? 1 : 2;
+  const axis = extent[up] > 1e-3 * size ? up : extent.indexOf(size);
+  const view = isScan ? [[0.55, 0.55, 1], [0, 1, 0]]
+    : [isBrain ? [low[0] + high[0] < 0 ? -1 : 1, -0.6, 0.4] : [0.55, -1, 0.55]];
+  return { extent, size, own: { name: axis === up ? "Height" : `Coordinate_${"xyz"[axis]}`, axis }, view };
 }
 
-function highest(points) {
-  let best = 2;
-  for (let i = 5; i < points.length; i += 3) {
+function highest({ points, own: { axis } }) {
+  let best = axis;
+  for (let i = axis; i < points.length; i += 3) {
     if (points[i] > points[best]) { best = i; }
   }
-  return (best - 2) / 3;
+  return (best - axis) / 3;
 }
 
 const page = new Page();

@@ -70,7 +70,8 @@ void main() {
       if (interval > 0.0 && part > 0.999) {
         float phase = value / interval, width = max(fwidth(phase), 1e-6);
         line = (1.0 - smoothstep(0.6, 1.5, abs(fract(phase + 0.5) - 0.5) / width))
-          * (1.0 - smoothstep(0.2, 0.5, width)); // lines that are too dense would cover all
+          * (1.0 - smoothstep(0.2, 0.5, width)) // lines that are too dense would cover all,
+          * step(2e-5, width); // and so would one where the values are constant
       }
     }
   }

@@ -463,7 +463,7 @@ class Files(EngineTest):
         self.engine.run("turing_texture", number_of_time_steps=40, refine_to=2.0)
         pattern = self.engine.call("resultArray", "Texture")
         data = self.engine.write("a.ply")
-        kept = json.loads(self.engine.call("keep"))
+        kept = self.engine.open("kept.vtp", self.engine.write("kept.vtp"))
         self.assertEqual(kept["points"], len(pattern))
         np.testing.assert_array_equal(self.engine.array("Texture", "point")[:, 0], pattern)
         self.assertEqual(self.engine.run("relief", array="Texture", height=0.1)["points"], True)

@@ -12,7 +12,7 @@ import unittest
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
-from browser import difference, drag, open_browser, picture_of, wait_for
+from browser import difference, drag, open_browser, picture_in, picture_of, wait_for
 
 try:
     import surfacediffusion as sd
@@ -202,6 +202,11 @@ class TestPage(unittest.TestCase):
         self.compare("heat", {"array": "age", "fwhm": 3.0}, {
             "ageDiffused": sd.heat(self.surface, np.loadtxt(self.folder / "age.csv", skiprows=1), fwhm=3.0)})
 
+    def test_files_may_be_dropped_in_any_order(self):
+        np.savetxt(self.folder / "a.csv", self.values, header="first", comments="")
+        self.one("file").send_keys(f"{self.folder / 'a.csv'}\n{self.folder / 'pebble.ply'}")
+        wait_for(lambda: "first" in [option.text for option in Select(self.one("array")).options], "both files")
+
     # ---- long runs, wrong files -----------------------------------------------------------------
 
     def test_cancel_ends_a_run_at_once_and_keeps_the_former_result(self):
@@ -243,6 +248,14 @@ class TestPage(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "allowed"):
             self.call("run", "heat", {"array": "thickness", "fwhm": -1.0})
         self.set_field("set-fwhm", "2")
+        self.apply()
+
+    def test_runs_without_room_are_refused_before_they_start(self):
+        start = time.monotonic()
+        with self.assertRaisesRegex(ValueError, "about .* GB of memory; allowed: 2 GB"):
+            self.call("run", "turing_texture", {"refine_to": 1e-4, "maximum_number_of_triangles": 10**8})
+        self.assertLess(time.monotonic() - start, 20)
+        self.assertEqual(self.one("message").get_attribute("className"), "error")
         self.apply()
 
     def test_names_in_files_are_no_code(self):
@@ -294,6 +307,19 @@ class TestPage(unittest.TestCase):
         wait_for(lambda: "Point " in self.one("pick-list").text, "a source")
         self.apply()
         self.assertTrue(self.one("lines").is_selected())  # distances have isolines
+
+    def test_steps_and_energy_are_seen_and_the_view_is_saved(self):
+        self.choose("model", "intrinsic_tv")
+        self.apply()
+        words = self.browser.find_element(By.CSS_SELECTOR, "#curve svg").get_attribute("aria-label")
+        self.assertRegex(words, "Energy from .* to .*, time 0 to ")
+        self.one("time").send_keys(Keys.HOME + 3 * Keys.ARROW_RIGHT)
+        wait_for(lambda: "Step 3 of 10" in self.message() and "Done in" in self.message(), "the third step")
+        self.one("picture").click()
+        path = self.folder / "pebble.png"
+        wait_for(path.exists, "the picture", 30)
+        halves = np.array_split(wait_for(lambda: picture_in(path.read_bytes()), "all of it"), 2, axis=1)
+        self.assertGreater(min(map(coloured, halves)), 0.1)
 
     def test_100k_triangles_are_seen_and_smoothed_within_seconds(self):
         surface, values = pebble(6)

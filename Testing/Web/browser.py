@@ -51,13 +51,17 @@ def wait_for(condition, what, seconds=PATIENCE):
             return result
         if time.monotonic() > end:
             raise AssertionError(f"not within {seconds} s: {what}; last: {last!r}")
-        time.sleep(0.25)  # pictures of the page take time, too
+        time.sleep(0.1)  # pictures of the page take time, too
+
+
+def picture_in(png):
+    """An array (height, width, 3) of int."""
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
 
 
 def picture_of(browser):
     """The page as an array (height, width, 3) of int."""
-    image = Image.open(io.BytesIO(browser.get_screenshot_as_png())).convert("RGB")
-    return np.asarray(image).astype(int)
+    return picture_in(browser.get_screenshot_as_png())
 
 
 def difference(first, second):

@@ -13,6 +13,7 @@
 #include "Files/Xml.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -51,13 +52,12 @@ std::string NameOfValues(const std::string& name)
   {
     plain.erase(0, 3);
   }
-  const std::string ending = EndingOf(plain);
-  for (const char* const known : { "csv", "txt", "tsv", "mgh", "mgz", "label", "annot", "asc" })
+  const auto isKnown = [&plain](const char* ending) { return EndingOf(plain) == ending; };
+  constexpr const char* endings[] = { "csv", "txt", "tsv", "mgh", "mgz", "label", "annot", "asc",
+    "gii", "shape", "func" };
+  while (std::any_of(std::begin(endings), std::end(endings), isKnown))
   {
-    if (ending == known)
-    {
-      plain.resize(plain.size() - ending.size() - 1);
-    }
+    plain.resize(plain.rfind('.'));
   }
   return plain.empty() ? "values" : plain;
 }
@@ -117,7 +117,7 @@ SurfaceFile ReadByKind(const std::string& name, const Content& content)
   const std::string root = RootOf(content);
   if (root == "GIFTI")
   {
-    return ReadGifti(content);
+    return ReadGifti(content, NameOfValues(name));
   }
   if (root == "VTKFile")
   {

@@ -117,7 +117,8 @@ std::vector<double> ReadData(const DataArray& array, std::string_view text)
   return numbers;
 }
 
-void Take(const DataArray& array, std::vector<double> numbers, SurfaceFile& file)
+void Take(
+  const DataArray& array, std::vector<double> numbers, const std::string& name, SurfaceFile& file)
 {
   const auto columns = static_cast<std::size_t>(array.Sizes.size() == 2 ? array.Sizes[1] : 1);
   const bool arePoints = array.Intent == "NIFTI_INTENT_POINTSET";
@@ -155,19 +156,14 @@ void Take(const DataArray& array, std::vector<double> numbers, SurfaceFile& file
   {
     return;
   }
-  FileArray values{ array.Name, false, columns };
-  constexpr std::string_view prefix = "NIFTI_INTENT_";
-  if (values.Name.empty() && array.Intent.size() > prefix.size())
-  {
-    values.Name = LowerCase(array.Intent.substr(prefix.size()));
-  }
+  FileArray values{ array.Name.empty() ? name : array.Name, false, columns };
   values.Numbers = std::move(numbers);
   file.Arrays.push_back(std::move(values));
 }
 
 } // namespace
 
-SurfaceFile ReadGifti(Content content)
+SurfaceFile ReadGifti(Content content, const std::string& name)
 {
   XmlReader xml(content.Text());
   SurfaceFile file;
@@ -203,7 +199,7 @@ SurfaceFile ReadGifti(Content content)
     else if (xml.Name() == "DataArray" && isInArray)
     {
       isInArray = false;
-      Take(array, std::move(numbers), file);
+      Take(array, std::move(numbers), name, file);
       numbers.clear();
     }
   }

@@ -8,7 +8,7 @@ namespace SurfaceDiffusion::Files
 {
 
 /// GIFTI: surfaces, and values at their points, in text, base 64 or compressed.
-SurfaceFile ReadGifti(Content content);
+SurfaceFile ReadGifti(Content content, const std::string& name);
 /// The surface, and each array of the points.
 Bytes WriteGifti(const SurfaceFile& surface);
 
