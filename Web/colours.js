@@ -66,15 +66,15 @@ function rangeOf(numbers) {
   return { low, high, first, last };
 }
 
-/** The values are numbers of regions: few integers, of which each has many. */
+/** The values are numbers of regions: few integers. Colours repeat after a dozen. */
 function isLabels(numbers, name) {
-  if (!/region|label|nearest|parcel|annot|component/i.test(name)) { return false; }
+  if (!/region|label|nearest|parcel|annot|aparc|component/i.test(name)) { return false; }
   const seen = new Set();
   for (let i = 0; i < numbers.length; ++i) {
     if (numbers[i] !== Math.trunc(numbers[i]) && !Number.isNaN(numbers[i])) { return false; }
-    if (!Number.isNaN(numbers[i]) && seen.size <= LABELS.length) { seen.add(numbers[i]); }
+    if (!Number.isNaN(numbers[i]) && seen.size <= 64) { seen.add(numbers[i]); }
   }
-  return seen.size <= LABELS.length;
+  return seen.size <= 64;
 }
 
 /** Whether three or four components are red, green and blue from 0 to 255, or a unit vector. */
@@ -183,15 +183,21 @@ function drawBar(context, { x, y, width, title, shown, colour }) {
   while (words.length > 4 && context.measureText(words).width > width) { words = words.slice(0, -2) + "…"; }
   context.fillText(words, x, y);
   if (!shown || shown.colours) { return; }
-  const [first, last] = shown.limits, top = y + line + 4;
+  const [first, last] = shown.limits, top = y + line + 4, labels = shown.labels ? last - first + 1 : 0;
   for (let i = 0; i < width; ++i) {
-    const k = 4 * Math.min(255, Math.floor(256 * i / width));
+    const share = labels ? Math.floor(labels * i / width) / Math.max(labels - 1, 1) : i / width;
+    const k = 4 * Math.min(255, Math.round(255 * share));
     context.fillStyle = `rgb(${shown.map[k]},${shown.map[k + 1]},${shown.map[k + 2]})`;
     context.fillRect(x + i, top, 1.5, 10);
   }
   context.fillStyle = colour;
   context.font = "12px system-ui, sans-serif";
   const below = top + 14, { low, high } = shown.extent;
+  if (labels && labels <= 12) { // each below its colour
+    context.textAlign = "center";
+    for (let k = 0; k < labels; ++k) { context.fillText(shortNumber(first + k), x + (k + 0.5) * width / labels, below); }
+    return;
+  }
   context.fillText((low < first ? "≤ " : "") + shortNumber(first), x, below);
   context.textAlign = "right";
   context.fillText((high > last ? "≥ " : "") + shortNumber(last), x + width, below);

@@ -51,9 +51,10 @@ class Picks {
       colour: kind.keyword === "seeds" ? LABELS[(value - 1) % LABELS.length].map((x) => x / 255) : [0.8, 0.1, 0.2] })));
   }
 
-  /** As arguments of the model. */
-  inputs() {
+  /** As arguments of the model. options: its others. Seeds of a region that the form does not count add it. */
+  inputs({ number_of_regions: regions = 2 }) {
     const points = this.list.map(({ point }) => point), values = this.list.map(({ value }) => value);
-    return { [this.kind.keyword]: this.kind.valued ? { points, values } : points };
+    return { [this.kind.keyword]: this.kind.valued ? { points, values } : points,
+      ...(this.kind.keyword === "seeds" ? { number_of_regions: Math.max(regions, ...values) } : {}) };
   }
 }
