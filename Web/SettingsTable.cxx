@@ -60,7 +60,7 @@ public:
   {
     double length = mayBeAutomatic ? -1.0 : 0.0;
     int most = 4000000;
-    this->Number({ "RefineTo", "length",
+    this->Number({ "RefineTo", "coordinates",
                    "Edges that are longer are bisected first, in the unit of "
                    "the coordinates, and the data go along. 0: the surface stays as it is. -1, for "
                    "textures: FeatureSize / 8 if that is less than 6 mean edge lengths." },

@@ -10,7 +10,7 @@ const $ = (id) => document.getElementById(id);
 /** "NumberOfTimeSteps" as "Number of time steps", "FWHM" as it is. */
 function wordsOf(name) {
   const words = name.replace(/([a-z0-9])([A-Z])/g, "$1 $2").replace(/([A-Z])([A-Z][a-z])/g, "$1 $2").split(" ");
-  return words.map((word, i) => (i === 0 || /^[A-Z]{2,}$/.test(word) ? word : word.toLowerCase())).join(" ");
+  return words.map((word, i) => (i === 0 || /^[A-Z]{2,}$|^Delaunay$/.test(word) ? word : word.toLowerCase())).join(" ");
 }
 
 /**
@@ -137,7 +137,7 @@ class Controls {
       textContent: setting ? setting.help : entry.help });
     input.setAttribute("aria-describedby", help.id);
     let unit = setting ? setting.unit : "";
-    if (unit === "coordinates") { unit = this.unit(); }
+    unit = unit === "coordinates" ? this.unit() : unit.replace("^2", "²");
     const label = makeElement("label", { htmlFor: input.id },
       entry.label || wordsOf(field.property).replace(/ array$/, ""),
       ...(unit && unit !== "1" && unit !== "time" ? [makeElement("small", { textContent: ` ${unit}` })] : []));

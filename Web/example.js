@@ -4,8 +4,23 @@
 
 /** A rough pebble with noisy stripes as the text of a PLY file, so that there is something to try at once. */
 function pebble() {
-  const rings = 70, around = 140, lines = [], faces = [];
-  let seed = 1;
+  const g = (1 + Math.sqrt(5)) / 2, lines = [];
+  let seed = 1, faces = [[0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11], [1, 5, 9], [5, 11, 4], [11, 10, 2],
+    [10, 7, 6], [7, 1, 8], [3, 9, 4], [3, 4, 2], [3, 2, 6], [3, 6, 8], [3, 8, 9], [4, 9, 5], [2, 4, 11], [6, 2, 10],
+    [8, 6, 7], [9, 8, 1]];
+  const points = [[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0], [0, -1, g], [0, 1, g], [0, -1, -g], [0, 1, -g],
+    [g, 0, -1], [g, 0, 1], [-g, 0, -1], [-g, 0, 1]].map(unit);
+  for (let level = 0; level < 5; ++level) { // the icosahedron's triangles in four, again and again
+    const middles = new Map(), middle = (a, b) => {
+      const key = Math.min(a, b) * 1e6 + Math.max(a, b);
+      if (!middles.has(key)) { middles.set(key, points.push(unit(points[a].map((x, axis) => x + points[b][axis]))) - 1); }
+      return middles.get(key);
+    };
+    faces = faces.flatMap(([a, b, c]) => {
+      const [d, e, f] = [middle(a, b), middle(b, c), middle(c, a)];
+      return [[a, d, f], [d, b, e], [f, e, c], [d, e, f]];
+    });
+  }
   const noise = () => { // sums of four even random numbers, near to normal ones
     let sum = -2;
     for (let k = 0; k < 4; ++k) {
@@ -14,29 +29,14 @@ function pebble() {
     }
     return 1.7 * sum;
   };
-  const add = (polar, angle) => {
-    const [x, y, z] = [Math.sin(polar) * Math.cos(angle), Math.sin(polar) * Math.sin(angle), Math.cos(polar)];
+  points.forEach(([x, y, z]) => {
     const radius = 10 + Math.sin(3 * x) * Math.cos(2 * y) + 1.5 * y * z + 0.02 * noise();
     const wave = Math.sin(4 * x + 2 * y * z) + 0.6 * z;
     const stripe = (wave > -0.4) + (wave > 0.5) + 0.2 * noise();
     lines.push([x, y, z].map((c) => (radius * c).toFixed(4)).concat(stripe.toFixed(3)).join(" "));
-  };
-  add(0, 0);
-  for (let r = 1; r < rings; ++r) {
-    for (let a = 0; a < around; ++a) { add(Math.PI * r / rings, 2 * Math.PI * (a + 0.5 * (r % 2)) / around); }
-  }
-  add(Math.PI, 0);
-  const id = (r, a) => 1 + (r - 1) * around + (a + around) % around, end = lines.length - 1;
-  for (let a = 0; a < around; ++a) {
-    faces.push(`3 0 ${id(1, a)} ${id(1, a + 1)}`, `3 ${end} ${id(rings - 1, a + 1)} ${id(rings - 1, a)}`);
-    for (let r = 1; r < rings - 1; ++r) {
-      const s = r % 2; // odd rings are turned by half a step
-      faces.push(s ? `3 ${id(r, a)} ${id(r + 1, a)} ${id(r + 1, a + 1)}` : `3 ${id(r, a)} ${id(r + 1, a)} ${id(r, a + 1)}`,
-        s ? `3 ${id(r, a)} ${id(r + 1, a + 1)} ${id(r, a + 1)}` : `3 ${id(r, a + 1)} ${id(r + 1, a)} ${id(r + 1, a + 1)}`);
-    }
-  }
+  });
   const head = ["ply", "format ascii 1.0", `element vertex ${lines.length}`, "property double x", "property double y",
     "property double z", "property double stripes", `element face ${faces.length}`,
     "property list uchar int vertex_indices", "end_header"];
-  return new TextEncoder().encode([...head, ...lines, ...faces, ""].join("\n")).buffer;
+  return new TextEncoder().encode([...head, ...lines, ...faces.map((face) => `3 ${face.join(" ")}`), ""].join("\n")).buffer;
 }
