@@ -442,6 +442,10 @@ private:
   std::string SettingOf(const Element& element) const
   {
     const std::string name = element.Take("name");
+    if (!element.Take("when").empty())
+    {
+      Fail("the condition of " + name + " belongs into its declaration, as OnlyIf");
+    }
     const Panel panel = PanelMaker(element.Take("of", this->Model)).Find(name);
     Attributes more = { { "command", "Set" + name },
       { "number_of_elements", std::to_string(panel.Elements) },

@@ -180,6 +180,8 @@ class TestPage(unittest.TestCase):
                 self.assertTrue(self.one("download").is_enabled())
                 if model == "heat":
                     self.assertIn("four mean edge lengths", self.message())
+                if model == "interpolate":  # values at points, in place of the array
+                    self.assertEqual(Select(self.one("shown")).first_selected_option.text, "Interpolated")
 
     def test_a_smooth_mesh_comes_back_in_its_format_with_the_numbers_of_the_form(self):
         self.set_field("set-fwhm", "2.5")
