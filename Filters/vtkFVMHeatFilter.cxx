@@ -24,5 +24,6 @@ void vtkFVMHeatFilter::UsePaperScheme()
   this->SetTimeIntegratorToFirstOrder();
   this->SetModeToTimeSteps();
   this->SetMassMatrixToLumped();
+  this->SetVectorTypeToComponents();
 }
 VTK_ABI_NAMESPACE_END

@@ -14,7 +14,7 @@
  * data are missing, 1 elsewhere. The boundary condition is the homogeneous Neumann condition. The
  * special cases are the paper's (1) smoothing (lambda = 0, g1 = g2), (4) anisotropic smoothing
  * along a direction field, (16) denoising (lambda > 0) and (18) inpainting (missing data). Each
- * component of the data diffuses independently of the others.
+ * component of the data diffuses independently of the others, unless they are tangent vectors.
  *
  * Diffusion for time t is a Gaussian blur of full width at half maximum 4 sqrt(t ln 2), regardless
  * of the triangulation. The property FWHM sets that width directly, and white noise of the variance
@@ -51,6 +51,19 @@
  * but for triangles with obtuse angles at boundaries.
  * One FirstOrder step of 2/k^2 is the implicit filter by scale of order 1, (1 - 2/k^2 Laplace) u =
  * f, which leaves a third of waves of the wave number k.
+ *
+ * With VectorType Tangent, three components are a vector u in the tangent plane: orthogonal to the
+ * normal of N. Max (J. Graphics Tools 4(2), 1999), two unknowns at each vertex. With the projector P of
+ * a triangle's plane, G = P (sum over its vertices of u_j grad(phi_j)^T) P is the covariant derivative
+ * there, and VectorLaplacian chooses the energy whose gradient stands in place of the Laplacian. On the
+ * unit sphere gradients and curls of degree l, with d = l (l + 1), decay at the rates
+ *
+ *     Connection   1/2 int G:G                              d - 1 both
+ *     Hodge        1/2 int (tr G)^2 + (G12 - G21)^2         d both
+ *     Viscous      int sym G : sym G                        2 d - 2 and d - 2
+ *
+ * up to an error of second order in h. Viscous keeps rigid rotations to round-off. Results at cells are
+ * in their planes.
  *
  * The energy in the history is 1/2 int (g1 (grad u . e1)^2 + g2 (grad u . e2)^2) + lambda/2
  * int chi (u - f)^2, summed over the components, in (units of the array)^2.
@@ -202,8 +215,68 @@ public:
   void SetMassMatrixToMixed() { this->SetMassMatrix(MASS_MATRIX_MIXED); }
   ///@}
 
+  enum VectorTypeType
+  {
+    VECTOR_TYPE_AUTOMATIC = 0,
+    VECTOR_TYPE_COMPONENTS = 1,
+    VECTOR_TYPE_TANGENT = 2
+  };
+
+  ///@{
   /**
-   * In addition to the superclass: Mode TimeSteps, MassMatrix Lumped.
+   * How data of three components are taken. Components: as so many scalars. Tangent: as vectors in the
+   * tangent plane of the surface, see the class comment; of 6, 9, ... components as several. It excludes
+   * IntrinsicDelaunay, and a surface in pieces is solved by one process. Automatic (default): Tangent if
+   * there are three components of floating-point numbers, and the vectors that are known and not 0 lie
+   * within 5 degrees of the surface on nine tenths of it, by area, and are not the coordinates;
+   * otherwise, and for large surfaces in pieces and with IntrinsicDelaunay, Components. A warning says
+   * that it is Tangent, or that at least half of the vectors lie in the surface.
+   */
+  SURFACEDIFFUSION_CHOICE(VectorType);
+  void SetVectorTypeToAutomatic() { this->SetVectorType(VECTOR_TYPE_AUTOMATIC); }
+  void SetVectorTypeToComponents() { this->SetVectorType(VECTOR_TYPE_COMPONENTS); }
+  void SetVectorTypeToTangent() { this->SetVectorType(VECTOR_TYPE_TANGENT); }
+  ///@}
+
+  enum VectorLaplacianType
+  {
+    VECTOR_LAPLACIAN_CONNECTION = 0,
+    VECTOR_LAPLACIAN_HODGE = 1,
+    VECTOR_LAPLACIAN_VISCOUS = 2
+  };
+
+  ///@{
+  /**
+   * The Laplacian of tangent vectors, see the class comment. Connection (default): for smoothing and
+   * denoising. Hodge: for filters that commute with divergence and curl. Viscous: for flows. Hodge and
+   * Viscous require diffusivities of 1.
+   */
+  SURFACEDIFFUSION_CHOICE(VectorLaplacian);
+  void SetVectorLaplacianToConnection() { this->SetVectorLaplacian(VECTOR_LAPLACIAN_CONNECTION); }
+  void SetVectorLaplacianToHodge() { this->SetVectorLaplacian(VECTOR_LAPLACIAN_HODGE); }
+  void SetVectorLaplacianToViscous() { this->SetVectorLaplacian(VECTOR_LAPLACIAN_VISCOUS); }
+  ///@}
+
+  enum NormalPartType
+  {
+    NORMAL_PART_DROP = 0,
+    NORMAL_PART_KEEP = 1,
+    NORMAL_PART_DIFFUSE = 2
+  };
+
+  ///@{
+  /**
+   * What becomes of the part of tangent vectors along the normal. Drop (default): it is left out. Keep:
+   * it stays as it is at the start. Diffuse: it is diffused as a scalar.
+   */
+  SURFACEDIFFUSION_CHOICE(NormalPart);
+  void SetNormalPartToDrop() { this->SetNormalPart(NORMAL_PART_DROP); }
+  void SetNormalPartToKeep() { this->SetNormalPart(NORMAL_PART_KEEP); }
+  void SetNormalPartToDiffuse() { this->SetNormalPart(NORMAL_PART_DIFFUSE); }
+  ///@}
+
+  /**
+   * In addition to the superclass: Mode TimeSteps, MassMatrix Lumped, VectorType Components.
    */
   void UsePaperScheme() override;
 

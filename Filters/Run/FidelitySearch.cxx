@@ -10,6 +10,7 @@
 #include "Core/Statistics/RiskDirections.h"
 #include "Core/Statistics/UnbiasedRisk.h"
 #include "Core/Statistics/WeightSearch.h"
+#include "Core/Vectors/TangentPlanes.h"
 #include "Run/CorrelatedNoise.h"
 #include "Run/DataPreparation.h"
 
@@ -199,6 +200,13 @@ void ColumnSearch::SetDirections()
     SetRiskDirectionsOfCells(*this->Inputs.Cells, this->Inputs.GivenCells, this->Data,
       this->Compared, ranges, NoiseGain(this->Inputs), this->Directions);
   }
+  for (Values& direction : this->Directions)
+  {
+    if (this->Task.Planes)
+    {
+      direction = this->Task.Planes->Vectors(this->Task.Planes->Coordinates(direction), Values());
+    }
+  }
 }
 
 /// By the edges of the component, so that it does not depend on the others.
@@ -300,7 +308,9 @@ ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
   const NoiseEstimate estimate = this->Estimate(range, notes);
   const double between =
     estimate.BetweenNeighbours * (this->Inputs.Cells ? this->Task.CellNoiseGain : 1.0);
-  const double estimated = this->Inputs.Cells ? between : estimate.Level();
+  // Two of three dimensions have it.
+  const double gain = this->Task.Planes ? std::sqrt(1.5) : 1.0;
+  const double estimated = gain * (this->Inputs.Cells ? between : estimate.Level());
   if (!isGiven && !this->Inputs.Cells && !estimate.IsCorrelated() && this->Parts.empty())
   {
     this->NoteSmoothData(this->Data.FidelityFactors.size() > 0
@@ -324,7 +334,7 @@ ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
   }
   // Noise of more than the differences between neighbours is not white. That of cells is taken for it.
   const bool isWhite = estimate.IsUndetermined || this->Inputs.Cells ||
-    level <= NoiseEstimate::CorrelatedGrowth * between;
+    level <= NoiseEstimate::CorrelatedGrowth * gain * between;
   return { level, isWhite };
 }
 

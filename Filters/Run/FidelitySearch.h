@@ -12,6 +12,7 @@ namespace SurfaceDiffusion
 {
 
 class HeatBlur;
+class TangentPlanes;
 
 /// Makes the model of some columns of the data with a fidelity weight in units of the numerics.
 using FidelityModelMaker = std::function<std::unique_ptr<Model>(PointData data, double fidelity)>;
@@ -27,6 +28,8 @@ struct FidelityTask
   bool ColumnsShareWeight = true; ///< false: each has its own
   double CellNoiseGain = 0.0; ///< of data on cells, see FindCellNoiseGain()
   bool IsLinear = false; ///< whether models have any number of columns that do not mix
+  /// Of data that are tangent vectors, of which noise along the normal is left out; null: they are not.
+  const TangentPlanes* Planes = nullptr;
   HeatBlur* Blur = nullptr; ///< applied to a state before it is compared; may be null
 };
 

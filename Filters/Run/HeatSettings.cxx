@@ -93,6 +93,7 @@ void HeatSettings::Visit(SettingVisitor& visitor)
     this->FWHM, SettingRange::NonNegative());
   VisitAutomaticFidelity(
     visitor, this->AutomaticFidelity, this->NoiseLevel, "FWHM=0 or AutomaticFidelity=1");
+  this->Vectors.Visit(visitor);
   this->Blur.Visit(visitor);
 }
 
@@ -103,7 +104,11 @@ void HeatSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
   {
     RequireChoice("Mode", this->Mode, HeatMode::SteadyState, "SteadyState",
       Word::Setting("BlurFWHM"), problems);
+    RequireChoice("VectorType", this->Vectors.Type, VectorType::Components, "Components",
+      Word::Setting("BlurFWHM"), problems);
   }
+  this->Vectors.CheckTogether(
+    fields, *this, this->AlongDiffusivity != 1.0 || this->AcrossDiffusivity != 1.0, problems);
   if (!(this->FWHM > 0.0))
   {
     return;
@@ -145,7 +150,10 @@ ModelTraits HeatSettings::DescribeModel() const
   traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
   traits.EstimatesNoise = this->FindsFidelity();
   traits.ColumnsAreIndependent = this->InitialFill != SurfaceDiffusion::InitialFill::Noise;
-  traits.CanBeDistributed = !this->FindsFidelity() && !this->Blur.IsOn();
+  traits.Vectors = this->Blur.IsOn() ? VectorType::Components : this->Vectors.Type;
+  traits.DropsNormalPart = this->Vectors.NormalPart == NormalPart::Drop;
+  traits.CanBeDistributed =
+    !this->FindsFidelity() && !this->Blur.IsOn() && traits.Vectors != VectorType::Tangent;
   DescribeData(*this, traits);
   return traits;
 }
@@ -239,6 +247,42 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
   return found.MakeModels(std::move(inputs.Data), make);
 }
 
+HeatSettings::Maker HeatSettings::DiffusionMaker(
+  const ModelInputs& inputs, std::shared_ptr<const TangentPlanes> planes, CornerWeights weights,
+  const SolverTask& task) const
+{
+  const auto assembler = inputs.Surface.SharedAssembler();
+  if (!planes)
+  {
+    return [&inputs, assembler, weights](PointData data, const LinearDiffusion::Settings& settings,
+             std::shared_ptr<LinearSolver> solver)
+    {
+      return std::make_unique<LinearDiffusion>(
+        assembler, weights, std::move(data), settings, std::move(solver), inputs.Parallel);
+    };
+  }
+  return [&inputs, assembler, weights, task, planes, vectors = this->Vectors](PointData data,
+           const LinearDiffusion::Settings& settings, std::shared_ptr<LinearSolver> solver)
+  {
+    std::unique_ptr<Model> normal;
+    if (vectors.NormalPart == NormalPart::Diffuse)
+    {
+      PointData parts = data;
+      parts.Given = planes->NormalParts(data.Given);
+      parts.Start = planes->NormalParts(data.Start);
+      SolverTask scalar = task;
+      scalar.NumberOfVertices = assembler->Mesh().NumberOfVertices();
+      const auto solverOfNormal = inputs.Solvers.Find(SolverPurpose::NormalPart, scalar);
+      solverOfNormal->SetLimits(solver->GetLimits());
+      normal = std::make_unique<LinearDiffusion>(
+        assembler, weights, std::move(parts), settings, solverOfNormal, inputs.Parallel);
+    }
+    return std::make_unique<TangentDiffusion>(assembler, planes, weights, std::move(data),
+      TangentDiffusion::Settings{ settings, vectors.Laplacian, vectors.NormalPart },
+      std::move(solver), std::move(normal), inputs.Parallel);
+  };
+}
+
 std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
   PrepareData(*this, inputs, result);
@@ -268,6 +312,17 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
   task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.DiffusionNumber = this->LargestDiffusivity() * settings.ImplicitStep() / (h * h);
   task.Anisotropy = this->Anisotropy();
+  if (inputs.AreTangent)
+  {
+    task.NumberOfVertices *= 2; // unknowns
+    task.NumberOfColumns = std::max(1, task.NumberOfColumns / 3);
+    task.AllowMultigrid = false;
+  }
+  const auto planes = inputs.AreTangent
+    ? std::make_shared<TangentPlanes>(
+        inputs.Surface.SharedMesh(), VertexPositions(inputs.Surface), inputs.Parallel)
+    : nullptr;
+  const auto makeDiffusion = this->DiffusionMaker(inputs, planes, weights, task);
   const double solvesPerStep = settings.NumberOfSolves();
   if (this->Mode == HeatMode::SteadyState)
   {
@@ -285,13 +340,13 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
       LinearDiffusion::Settings steady;
       steady.Fidelity = weight;
       steady.TimeScheme = LinearDiffusion::Scheme::SteadyState;
-      return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
-        std::move(data), steady, solver, inputs.Parallel);
+      return makeDiffusion(std::move(data), steady, solver);
     };
     FidelityTask search;
     search.NoiseLevel = this->NoiseLevel;
-    search.ColumnsShareWeight = false;
+    search.ColumnsShareWeight = inputs.AreTangent;
     search.IsLinear = true;
+    search.Planes = this->Vectors.NormalPart == NormalPart::Diffuse ? nullptr : planes.get();
     fidelity = FindFidelity(inputs, search, solve, result);
     effective = fidelity.OfColumns.front() / fidelityUnit;
   }
@@ -317,8 +372,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
       solver->SetLimits(limits);
       settings.SufficientResidual = limits.AskedTolerance;
     }
-    return std::make_unique<LinearDiffusion>(inputs.Surface.SharedAssembler(), weights,
-      std::move(data), settings, solver, inputs.Parallel);
+    return makeDiffusion(std::move(data), settings, solver);
   };
   return fidelity.MakeModels(std::move(inputs.Data), make);
 }

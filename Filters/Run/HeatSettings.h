@@ -4,6 +4,9 @@
 
 #include "Run/BlurSettings.h"
 #include "Run/RunSettings.h"
+#include "Run/VectorSettings.h"
+
+#include <functional>
 
 namespace SurfaceDiffusion
 {
@@ -31,6 +34,7 @@ struct HeatSettings : DataSettings
   bool AutomaticFidelity = false;
   double NoiseLevel = 0.0;
   BlurSettings Blur;
+  VectorSettings Vectors;
 
   HeatSettings()
   {
@@ -52,6 +56,14 @@ private:
     return this->AutomaticFidelity || (this->Blur.IsOn() && this->FidelityWeight == 0.0);
   }
   std::unique_ptr<Model> MakeDeblurring(ModelInputs& inputs, RunResult& result) const;
+  using Maker = std::function<std::unique_ptr<Model>(PointData data,
+    const LinearDiffusion::Settings& settings, std::shared_ptr<LinearSolver> solver)>;
+  /// Of the models of scalars or, with planes, of tangent vectors; it and they must not outlive
+  /// `inputs`.
+  Maker DiffusionMaker(const ModelInputs& inputs, std::shared_ptr<const TangentPlanes> planes,
+    CornerWeights weights, const SolverTask& task) const; it and they must not outlive `inputs`.
+  Maker DiffusionMaker(
+    const ModelInputs& inputs, CornerWeights weights, const SolverTask& task) const;
   void WarnOfWidth(const ModelInputs& inputs, RunResult& result) const;
 };
 

@@ -39,6 +39,7 @@ struct ModelInputs
   Index LargestCellSeed = 0; ///< of seeds on cells, which vertices between cells do not have
   KnownValues Known = {}; ///< of models that use them
   std::vector<Index> GivenCells = {}; ///< as in Fields
+  bool AreTangent = false; ///< the data are tangent vectors, as ModelTraits::Vectors asks
 };
 
 /// A run on one surface at its current step.

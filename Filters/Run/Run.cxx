@@ -47,15 +47,17 @@ void Run::Update(const std::vector<BlockInput>& inputs, std::shared_ptr<RunSetti
   }
   this->RequireKnownValue(fields, processes);
   this->MeasureUnits(processes);
+  const bool tangent = this->AreTangent();
   for (std::size_t b = 0; b < count; ++b)
   {
     Block& block = *this->Blocks[b];
     UnitSystem units = this->CommonUnits;
     units.LengthUnit = block.Surface->Mesh().LengthUnit();
-    if (processes.Any(!block.Path || !(units == block.Units)))
+    if (processes.Any(!block.Path || !(units == block.Units) || tangent != block.AreTangent))
     {
       block.Path.reset();
       block.Units = units;
+      block.AreTangent = tangent;
       const double share = static_cast<double>(count);
       NameBlockInErrors(block.Name, *this->Settings,
         [&]
@@ -120,6 +122,9 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   block.Statistics = ValueStatistics();
   block.Statistics.Add(*block.Surface, *fields, inpaint, processes);
   block.HasData = processes.Any(fields->Data.Values.cols() > 0);
+  block.Tangents = traits.Vectors == VectorType::Automatic
+    ? MeasureTangents(*block.Surface, *fields, processes, this->Parallel)
+    : TangentShare();
   block.HasMask = !mask.empty();
   block.HasMasked = std::any_of(mask.begin(), mask.end(), [](char masked) { return masked != 0; });
   block.MaskVersion = Fingerprint();
@@ -140,6 +145,10 @@ Values Run::Block::CellResult(Values given, bool keepDetail, const ParallelFor& 
     DecodeColors(given, parallel);
   }
   given = MakeCellResult(*this->Cells, this->Path->State(), given, keepDetail);
+  if (this->IsInCellPlanes)
+  {
+    ProjectIntoCells(*this->Surface, this->Cells->Transfer, given, parallel);
+  }
   if (this->HasLinearLight)
   {
     EncodeColors(given, parallel);
@@ -155,6 +164,7 @@ void Run::MeasureUnits(const Reduction& processes)
   std::vector<const TriangleMesh*> drawn;
   this->LongEdges = 0.0;
   ValueStatistics statistics;
+  this->Tangents = TangentShare();
   for (const auto& block : this->Blocks)
   {
     const TriangleMesh& mesh = block->Surface->Mesh();
@@ -170,6 +180,7 @@ void Run::MeasureUnits(const Reduction& processes)
     drawn.push_back(&block->Surface->InputMesh());
     this->LongEdges += block->Edges->LeftOut;
     statistics.Merge(block->Statistics);
+    this->Tangents.Merge(block->Tangents);
   }
 
   const ModelTraits traits = this->Settings->DescribeModel();
@@ -195,6 +206,17 @@ void Run::MeasureUnits(const Reduction& processes)
   this->UnitOfTime = traits.AbsoluteTime ? 1.0
                                          : std::pow(units.MeanEdgeLength, traits.Time.Length) *
       std::pow(units.ValueRange, traits.Time.Value) * traits.TimeFactor;
+}
+
+/// Whether the data are taken as tangent vectors.
+bool Run::AreTangent() const
+{
+  const VectorType type = this->Settings->DescribeModel().Vectors;
+  const bool isDecomposed = std::any_of(this->Blocks.begin(), this->Blocks.end(),
+    [](const auto& block) { return block->Decomposition != nullptr; });
+  return type == VectorType::Tangent ||
+    (type == VectorType::Automatic && this->Tangents.AreTangent() &&
+      !this->Settings->IntrinsicDelaunay && !isDecomposed);
 }
 
 void Run::MakeModel(
@@ -226,6 +248,12 @@ void Run::MakeModel(
       *std::max_element(fields.Seeds.Values.begin(), fields.Seeds.Values.end());
   }
   inputs.GivenCells = fields.GivenCells;
+  inputs.AreTangent = block.AreTangent;
+  block.IsInCellPlanes = block.AreTangent && traits.DropsNormalPart;
+  if (traits.Vectors == VectorType::Automatic)
+  {
+    WarnOfVectors(this->Tangents, block.AreTangent, block.Result);
+  }
   if (traits.UsesKnownValues)
   {
     inputs.Known = FindKnownValues(*block.Surface, fields,

@@ -11,6 +11,7 @@
 #include "Run/ModelInputs.h"
 #include "Run/SolverStore.h"
 #include "Run/Undetermined.h"
+#include "Run/VectorSettings.h"
 #include "Run/WarningLog.h"
 
 #include <functional>
@@ -112,6 +113,9 @@ public:
     ValueStatistics Statistics;
     SurfaceDiffusion::Undetermined Undetermined;
     bool HasData = false;
+    TangentShare Tangents; ///< of VectorType Automatic
+    bool AreTangent = false; ///< the model takes the data as tangent vectors
+    bool IsInCellPlanes = false; ///< results at cells are
     bool HoldsDetail = false; ///< Path has the detail of the cells
     bool HasLinearLight = false; ///< the state is linear light of sRGB values
     bool HasMask = false;
@@ -161,6 +165,7 @@ private:
   void RequireKnownValue(
     const std::vector<std::unique_ptr<Fields>>& fields, const Reduction& processes) const;
   void MeasureUnits(const Reduction& processes);
+  bool AreTangent() const;
   void MakeModel(Block& block, const Fields& fields, const Reduction& processes,
     const ProgressMonitor& progress);
   PointData MakeData(Block& block, const Fields& fields, const Reduction& processes) const;
@@ -174,6 +179,7 @@ private:
   std::vector<std::unique_ptr<Block>> Blocks;
   UnitSystem CommonUnits;
   double WholeValueRange = 0.0, RobustValueRange = 0.0; ///< see ValueStatistics
+  TangentShare Tangents; ///< of all surfaces
   double LongEdges = 0.0; ///< the number of edges that do not count for h
   double UnitOfTime = 1.0;
   long long StepsComputed = 0;

@@ -67,6 +67,14 @@ void RequireDirections(const FieldSummary& fields, const char* along, double ofA
 /// what conjugate gradients reach on the largest surfaces is an answer with a warning.
 IterationLimits WithoutInertia(IterationLimits limits);
 
+/// How data of three components are taken.
+enum class VectorType
+{
+  Automatic, ///< Tangent if they are: see TangentShare
+  Components, ///< as so many scalars
+  Tangent ///< as tangent vectors, three components each
+};
+
 /// The properties of a model that a run needs before it makes the model. By default it has no time:
 /// its state is computed in one step.
 struct ModelTraits
@@ -109,6 +117,8 @@ struct ModelTraits
   const char* ResultSuffix = ""; ///< of the name of the result, after that of the data
   bool StateIsUnitVectors = false;
   bool StateIsLines = false; ///< unit vectors whose sign has no meaning
+  VectorType Vectors = VectorType::Components;
+  bool DropsNormalPart = true; ///< of tangent vectors
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each
   bool UsesLinearLight = false; ///< unsigned char colours are in sRGB, see LinearLight.h
 };

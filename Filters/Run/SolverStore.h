@@ -18,6 +18,7 @@ enum class SolverPurpose
 {
   Step, ///< the time steps
   SecondChemical, ///< those of a texture's second chemical
+  NormalPart, ///< those of the part of vectors along the normal
   Search, ///< the search for a fidelity weight
   Fill, ///< the harmonic start on missing vertices
   Blur, ///< the blur that is removed

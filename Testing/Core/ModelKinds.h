@@ -144,6 +144,26 @@ inline std::vector<ModelKind> AllModelKinds()
       "HeatExponentialOnCells", 2,
       [](Heat& s) { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential; },
       Content::ColorsOnCells),
+    MakeKind<Heat>(
+      "HeatTangent", 3, [](Heat& s) { s.Vectors.Type = VectorType::Tangent; },
+      Content::UnitVectors),
+    MakeKind<Heat>(
+      "HeatTangentOnCells", 2,
+      [](Heat& s)
+      {
+        s.Vectors = { VectorType::Tangent, VectorLaplacian::Viscous, NormalPart::Keep };
+        s.FidelityWeight = 0.5;
+      },
+      Content::UnitVectorsOnCells),
+    MakeKind<Heat>(
+      "HeatTangentDiffuse", 2,
+      [](Heat& s)
+      {
+        s.Vectors = { VectorType::Tangent, VectorLaplacian::Hodge, NormalPart::Diffuse };
+        s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential;
+        s.MassMatrix = SurfaceDiffusion::MassMatrix::Mixed;
+      },
+      Content::UnitVectors),
     MakeKind<Heat>("HeatDirected", 2,
       [](Heat& s)
       {

@@ -69,6 +69,7 @@ DATA = dict(
 DEFAULTS = {
     "vtkFVMHeatFilter": {
         **DATA, "TimeIntegrator": "Automatic", "MassMatrix": "Automatic", "Mode": "TimeSteps", "FWHM": 0.0,
+        "VectorType": "Automatic", "VectorLaplacian": "Connection", "NormalPart": "Drop",
         "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4},
     "vtkIntrinsicTVFilter": {
         **DATA, "TimeIntegrator": "FirstOrder", "FidelityWeight": 3.0, "InitialFill": "Mean", "Tolerance": 1e-3, "Mode": "TimeSteps",
@@ -142,6 +143,8 @@ WORDS = {
     "InitialFill": ("Input", "Mean", "Noise", "Harmonic"), "Mode": ("TimeSteps", "SteadyState"),
     "TimeIntegrator": ("FirstOrder", "SecondOrder", "Implicit", "Exponential", "Automatic"),
     "MassMatrix": ("Automatic", "Lumped", "Mixed"),
+    "VectorType": ("Automatic", "Components", "Tangent"),
+    "VectorLaplacian": ("Connection", "Hodge", "Viscous"), "NormalPart": ("Drop", "Keep", "Diffuse"),
     "Solver": ("Automatic", "Direct", "ConjugateGradient", "Multigrid"),
     "OutputPrecision": ("Single", "Double", "Input"), "EdgeFunction": EDGE_FUNCTIONS,
     "AcrossEdgeFunction": ("Same", *EDGE_FUNCTIONS), "ChannelCoupling": ("PerChannel", "Joint"),

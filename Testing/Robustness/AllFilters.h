@@ -156,6 +156,32 @@ inline std::vector<FilterKind> AllFilters()
         f->SetMassMatrixToMixed();
       }),
     MakeKind<Heat>("HeatMixed", "fDiffused", 2, [](Heat* f) { f->SetMassMatrixToMixed(); }),
+    MakeKind<Heat>("HeatTangent", "e1Diffused", 2,
+      [](Heat* f)
+      {
+        f->SetVectorTypeToTangent();
+        f->SetNormalPartToDiffuse();
+        SetInputArray(f, 0, "e1");
+      }),
+    MakeKind<Heat>("HeatTangentViscous", "e1Diffused", 2,
+      [](Heat* f)
+      {
+        f->SetVectorTypeToTangent();
+        f->SetVectorLaplacianToViscous();
+        f->SetTimeIntegratorToExponential();
+        f->SetMassMatrixToMixed();
+        SetInputArray(f, 0, "e1");
+        SetInputArray(f, 1, "mask");
+      }),
+    MakeKind<Heat>("HeatTangentSteady", "e1Diffused", 1,
+      [](Heat* f)
+      {
+        f->SetVectorTypeToTangent();
+        f->SetVectorLaplacianToHodge();
+        f->SetModeToSteadyState();
+        f->AutomaticFidelityOn();
+        SetInputArray(f, 0, "e1");
+      }),
     MakeKind<Heat>("HeatAutomatic", "fDiffused", 3, [](Heat* f) { f->AutomaticFidelityOn(); }),
     MakeKind<Heat>("HeatDeblurred", "fDiffused", 1,
       [](Heat* f)

@@ -40,6 +40,16 @@ int LinearDiffusion::Settings::NumberOfSolves() const
   }
 }
 
+DiffusionStep LinearDiffusion::Settings::Diffusion() const
+{
+  DiffusionStep step;
+  step.TimeStep = this->TimeScheme == Scheme::SteadyState ? InfiniteTime : this->TimeStep;
+  step.Fidelity = this->Fidelity;
+  step.IsConstant = true;
+  step.IsExponential = this->TimeScheme == Scheme::Exponential;
+  return step;
+}
+
 LinearDiffusion::LinearDiffusion(std::shared_ptr<const Assembler> assembler,
   CornerWeights coefficients, PointData data, const Settings& settings,
   std::shared_ptr<LinearSolver> solver, const ParallelFor& parallel)
@@ -198,17 +208,6 @@ void LinearDiffusion::Solve(StepReport& report, const ProgressMonitor& progress)
     report.MissedResidual = 0.0;
   }
   this->Panel.Correct(this->Balanced);
-}
-
-DiffusionStep LinearDiffusion::Diffusion() const
-{
-  DiffusionStep step;
-  step.TimeStep =
-    this->Options.TimeScheme == Scheme::SteadyState ? InfiniteTime : this->Options.TimeStep;
-  step.Fidelity = this->Options.Fidelity;
-  step.IsConstant = true;
-  step.IsExponential = this->Options.TimeScheme == Scheme::Exponential;
-  return step;
 }
 
 double LinearDiffusion::Energy() const

@@ -48,6 +48,7 @@ public:
     double ImplicitStep() const;
     /// The solves of a step.
     int NumberOfSolves() const;
+    DiffusionStep Diffusion() const;
   };
   static constexpr double Gamma = 0.2928932188134524;
 
@@ -62,7 +63,7 @@ public:
   /// 1/2 int D grad u . grad u + lambda/2 int chi |u - f|^2
   double Energy() const override;
 
-  DiffusionStep Diffusion() const override;
+  DiffusionStep Diffusion() const override { return this->Options.Diffusion(); }
   const CornerWeights& DiffusionWeights(Eigen::Index /*column*/) override
   {
     return this->Coefficients;
