@@ -247,9 +247,8 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
   return found.MakeModels(std::move(inputs.Data), make);
 }
 
-HeatSettings::Maker HeatSettings::DiffusionMaker(
-  const ModelInputs& inputs, std::shared_ptr<const TangentPlanes> planes, CornerWeights weights,
-  const SolverTask& task) const
+HeatSettings::Maker HeatSettings::DiffusionMaker(const ModelInputs& inputs,
+  std::shared_ptr<const TangentPlanes> planes, CornerWeights weights, const SolverTask& task) const
 {
   const auto assembler = inputs.Surface.SharedAssembler();
   if (!planes)

@@ -61,8 +61,8 @@ private:
   /// Of the models of scalars or, with planes, of tangent vectors; it and they must not outlive
   /// `inputs`.
   Maker DiffusionMaker(const ModelInputs& inputs, std::shared_ptr<const TangentPlanes> planes,
-    CornerWeights weights, const SolverTask& task) const; it and they must not outlive `inputs`.
-  Maker DiffusionMaker(
+    CornerWeights weights, const SolverTask& task) const;
+  it and they must not outlive `inputs`.Maker DiffusionMaker(
     const ModelInputs& inputs, CornerWeights weights, const SolverTask& task) const;
   void WarnOfWidth(const ModelInputs& inputs, RunResult& result) const;
 };
