@@ -58,12 +58,10 @@ private:
   std::unique_ptr<Model> MakeDeblurring(ModelInputs& inputs, RunResult& result) const;
   using Maker = std::function<std::unique_ptr<Model>(PointData data,
     const LinearDiffusion::Settings& settings, std::shared_ptr<LinearSolver> solver)>;
-  /// Of the models of scalars or, with planes, of tangent vectors; it and they must not outlive
+  /// Makes models of scalars or, with planes, of tangent vectors. It and they must not outlive
   /// `inputs`.
   Maker DiffusionMaker(const ModelInputs& inputs, std::shared_ptr<const TangentPlanes> planes,
     CornerWeights weights, const SolverTask& task) const;
-  it and they must not outlive `inputs`.Maker DiffusionMaker(
-    const ModelInputs& inputs, CornerWeights weights, const SolverTask& task) const;
   void WarnOfWidth(const ModelInputs& inputs, RunResult& result) const;
 };
 
