@@ -215,6 +215,16 @@ public:
   void SetMassMatrixToMixed() { this->SetMassMatrix(MASS_MATRIX_MIXED); }
   ///@}
 
+  /**
+   * The period P of cyclic data f, such as 360 for angles in degrees, in the unit of the data; 0
+   * (default): none. The filter diffuses the unit vectors (cos, sin)(2 pi f/P), which do not jump where
+   * f does. The result is their angle in data units, in the interval of length P that starts at 0, or at
+   * -P/2, or else at the minimum of the data, the first that holds all of them. A second array, with
+   * Coherence in place of the suffix Diffused, has the lengths of the vectors, from 0 where they cancel
+   * to 1 where they agree. Data with P added have the same result.
+   */
+  SURFACEDIFFUSION_PROPERTY(Period, double);
+
   enum VectorTypeType
   {
     VECTOR_TYPE_AUTOMATIC = 0,

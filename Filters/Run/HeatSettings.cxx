@@ -5,6 +5,7 @@
 #include "Core/Models/LinearDiffusion.h"
 #include "Core/Models/TikhonovDeblurring.h"
 #include "Core/Statistics/NoiseLevel.h"
+#include "Run/Angles.h"
 #include "Run/DataPreparation.h"
 #include "Run/FidelitySearch.h"
 #include "Run/ModelInputs.h"
@@ -93,6 +94,7 @@ void HeatSettings::Visit(SettingVisitor& visitor)
     this->FWHM, SettingRange::NonNegative());
   VisitAutomaticFidelity(
     visitor, this->AutomaticFidelity, this->NoiseLevel, "FWHM=0 or AutomaticFidelity=1");
+  VisitPeriod(visitor, this->Period);
   this->Vectors.Visit(visitor);
   this->Blur.Visit(visitor);
 }
@@ -106,6 +108,12 @@ void HeatSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
       Word::Setting("BlurFWHM"), problems);
     RequireChoice("VectorType", this->Vectors.Type, VectorType::Components, "Components",
       Word::Setting("BlurFWHM"), problems);
+  }
+  if (this->Period > 0.0 && this->Vectors.Type == VectorType::Tangent)
+  {
+    problems.push_back(Sentence(Word::Setting("Period"))
+      << " is " << this->Period << "; allowed together with " << Word::Setting("VectorType") << " "
+      << Word::Choice("VectorType", VectorType::Tangent, "Tangent") << ": 0");
   }
   this->Vectors.CheckTogether(
     fields, *this, this->AlongDiffusivity != 1.0 || this->AcrossDiffusivity != 1.0, problems);
@@ -149,13 +157,29 @@ ModelTraits HeatSettings::DescribeModel() const
   traits.Energy = { 0.0, 2.0 };
   traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
   traits.EstimatesNoise = this->FindsFidelity();
-  traits.ColumnsAreIndependent = this->InitialFill != SurfaceDiffusion::InitialFill::Noise;
-  traits.Vectors = this->Blur.IsOn() ? VectorType::Components : this->Vectors.Type;
+  traits.ColumnsAreIndependent =
+    this->InitialFill != SurfaceDiffusion::InitialFill::Noise && this->Period == 0.0;
+  traits.Period = this->Period;
+  traits.Vectors =
+    this->Blur.IsOn() || this->Period > 0.0 ? VectorType::Components : this->Vectors.Type;
   traits.DropsNormalPart = this->Vectors.NormalPart == NormalPart::Drop;
   traits.CanBeDistributed =
     !this->FindsFidelity() && !this->Blur.IsOn() && traits.Vectors != VectorType::Tangent;
   DescribeData(*this, traits);
   return traits;
+}
+
+std::vector<Output> HeatSettings::Finish(const RunState& state, RunResult& result) const
+{
+  std::vector<Output> outputs = this->DataSettings::Finish(state, result);
+  if (this->Period > 0.0)
+  {
+    Output coherence{ "Coherence", Place::PerVertex, OutputType::Real,
+      CoherenceOfAngles(state.Path.State() * state.Units.ValueUnit) };
+    coherence.IsBesideResult = true;
+    outputs.push_back(std::move(coherence));
+  }
+  return outputs;
 }
 
 /// A width in another unit than the coordinates shows as one that the mesh does not resolve, or that
@@ -343,7 +367,7 @@ std::unique_ptr<Model> HeatSettings::Make(ModelInputs& inputs, RunResult& result
     };
     FidelityTask search;
     search.NoiseLevel = this->NoiseLevel;
-    search.ColumnsShareWeight = inputs.AreTangent;
+    search.ColumnsShareWeight = inputs.AreTangent || this->Period > 0.0;
     search.IsLinear = true;
     search.Planes = this->Vectors.NormalPart == NormalPart::Diffuse ? nullptr : planes.get();
     fidelity = FindFidelity(inputs, search, solve, result);

@@ -35,6 +35,7 @@ struct HeatSettings : DataSettings
   double NoiseLevel = 0.0;
   BlurSettings Blur;
   VectorSettings Vectors;
+  double Period = 0.0;
 
   HeatSettings()
   {
@@ -45,6 +46,7 @@ struct HeatSettings : DataSettings
   void Visit(SettingVisitor& visitor) override;
   ModelTraits DescribeModel() const override;
   std::unique_ptr<Model> Make(ModelInputs& inputs, RunResult& result) const override;
+  std::vector<Output> Finish(const RunState& state, RunResult& result) const override;
 
 protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;

@@ -75,7 +75,9 @@ Eigen::Index CountColumns(const Output& output, const Run::Block* block)
   {
     return output.Rows.cols();
   }
-  return output.NumberOfColumns > 0 ? output.NumberOfColumns : block->Path->State().cols();
+  const Eigen::Index ofState = block->Path->State().cols();
+  const bool areAngles = output.Type == OutputType::Data && block->Period > 0.0;
+  return output.NumberOfColumns > 0 ? output.NumberOfColumns : areAngles ? ofState / 2 : ofState;
 }
 
 OutputRows::OutputRows(const Output& output, const OutputSource& source)
@@ -161,9 +163,9 @@ void OutputRows::TakeState(const Output& output, const OutputSource& source)
     return;
   }
   this->Unit = block.Units.ValueUnit;
-  if (block.HasLinearLight)
+  if (block.IsCoded())
   {
-    this->Own = block.EncodedState(source.Parallel);
+    this->Own = block.DecodedState(source.Parallel);
     this->Shared = nullptr;
     this->Unit = 1.0;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/Run.h"
 
+#include "Run/Angles.h"
 #include "Run/BlockSentences.h"
 #include "Run/Collective.h"
 #include "Run/LinearLight.h"
@@ -21,6 +22,21 @@ namespace
 /// Squares of values within these bounds neither overflow nor vanish.
 constexpr double LargestMagnitude = 1e100;
 constexpr double SmallestMagnitude = 1e-100;
+
+/// The smallest and the largest value of data with a period.
+ValueBounds BoundsOfAngles(const Fields& fields, double period, const Reduction& processes)
+{
+  ValueBounds bounds;
+  const Values& values = fields.Data.Values;
+  for (Eigen::Index k = 0; k < values.size() && period > 0.0; ++k)
+  {
+    if (std::isfinite(values.data()[k]))
+    {
+      bounds.Widen({ values.data()[k], values.data()[k] });
+    }
+  }
+  return OfAllProcesses(bounds, processes);
+}
 
 } // namespace
 
@@ -102,17 +118,16 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   {
     ProjectSamples(input.ReadSurface(), this->Settings->DescribeModel().MaximumDistance, *fields);
   }
-  block.HasLinearLight = fields->DataAreBytes && this->Settings->DescribeModel().UsesLinearLight;
-  if (block.HasLinearLight)
-  {
-    DecodeColors(fields->Data.Values, this->Parallel);
-  }
+  const ModelTraits traits = this->Settings->DescribeModel();
+  block.HasLinearLight = fields->DataAreBytes && traits.UsesLinearLight;
+  block.Period = traits.Period;
+  block.Angles = BoundsOfAngles(*fields, traits.Period, processes);
+  block.Encode(fields->Data.Values, this->Parallel);
   const std::vector<char> mask = fields->Mask.Values; // as it was given
   fields->Data.OnCells =
     processes.Any(fields->Data.OnCells); // that of a process without points, too
   MoveMarksToData(
     block.WholeSurface ? *block.WholeSurface : *block.Surface, *fields, processes, this->Parallel);
-  const ModelTraits traits = this->Settings->DescribeModel();
   if (traits.WeightlessAreMissing && traits.UsesFidelity)
   {
     MarkWeightless(block.WholeSurface ? *block.WholeSurface : *block.Surface, *fields);
@@ -131,28 +146,46 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   block.MaskVersion.AddBytes(mask.data(), mask.size(), this->Parallel);
 }
 
-Values Run::Block::EncodedState(const ParallelFor& parallel) const
+void Run::Block::Encode(Values& values, const ParallelFor& parallel) const
 {
-  Values colors = this->Path->State() * this->Units.ValueUnit;
-  EncodeColors(colors, parallel);
-  return colors;
+  if (this->HasLinearLight)
+  {
+    DecodeColors(values, parallel);
+  }
+  if (this->Period > 0.0)
+  {
+    EncodeAngles(values, this->Period, parallel);
+  }
+}
+
+void Run::Block::Decode(Values& values, const ParallelFor& parallel) const
+{
+  if (this->HasLinearLight)
+  {
+    EncodeColors(values, parallel);
+  }
+  if (this->Period > 0.0)
+  {
+    values = DecodeAngles(values, this->Period, this->BeginOfAngles, parallel);
+  }
+}
+
+Values Run::Block::DecodedState(const ParallelFor& parallel) const
+{
+  Values values = this->Path->State() * this->Units.ValueUnit;
+  this->Decode(values, parallel);
+  return values;
 }
 
 Values Run::Block::CellResult(Values given, bool keepDetail, const ParallelFor& parallel) const
 {
-  if (this->HasLinearLight)
-  {
-    DecodeColors(given, parallel);
-  }
+  this->Encode(given, parallel);
   given = MakeCellResult(*this->Cells, this->Path->State(), given, keepDetail);
   if (this->IsInCellPlanes)
   {
     ProjectIntoCells(*this->Surface, this->Cells->Transfer, given, parallel);
   }
-  if (this->HasLinearLight)
-  {
-    EncodeColors(given, parallel);
-  }
+  this->Decode(given, parallel);
   return given;
 }
 
@@ -165,6 +198,7 @@ void Run::MeasureUnits(const Reduction& processes)
   this->LongEdges = 0.0;
   ValueStatistics statistics;
   this->Tangents = TangentShare();
+  ValueBounds angles;
   for (const auto& block : this->Blocks)
   {
     const TriangleMesh& mesh = block->Surface->Mesh();
@@ -181,9 +215,14 @@ void Run::MeasureUnits(const Reduction& processes)
     this->LongEdges += block->Edges->LeftOut;
     statistics.Merge(block->Statistics);
     this->Tangents.Merge(block->Tangents);
+    angles.Widen(block->Angles);
   }
 
   const ModelTraits traits = this->Settings->DescribeModel();
+  for (const auto& block : this->Blocks)
+  {
+    block->BeginOfAngles = BeginOfAngles(angles, traits.Period);
+  }
   UnitSystem units;
   units.Natural = !this->Settings->IsAbsolute();
   units.MeanEdgeLength = edges > 0.0 ? length / edges : 1.0;

@@ -118,14 +118,21 @@ public:
     bool IsInCellPlanes = false; ///< results at cells are
     bool HoldsDetail = false; ///< Path has the detail of the cells
     bool HasLinearLight = false; ///< the state is linear light of sRGB values
+    double Period = 0.0; ///< of data of which the state has unit vectors, see Angles.h; 0: none
+    ValueBounds Angles; ///< of these data
+    double BeginOfAngles = 0.0; ///< of those of all blocks
+    bool IsCoded() const { return this->HasLinearLight || this->Period > 0.0; }
     bool HasMask = false;
     bool HasMasked = false; ///< a nonzero entry of the mask
     Fingerprint MaskVersion;
     SolverStore Solvers;
     SurfaceDiffusion::Decomposition* Decomposition = nullptr;
 
-    /// The current state in array units as sRGB values, if HasLinearLight.
-    Values EncodedState(const ParallelFor& parallel) const;
+    /// Data as the model has them, and its values as those of the data: sRGB values or angles.
+    void Encode(Values& values, const ParallelFor& parallel) const;
+    void Decode(Values& values, const ParallelFor& parallel) const;
+    /// The current state in array units as values of the data.
+    Values DecodedState(const ParallelFor& parallel) const;
     /// MakeCellResult() of the current state; given: the data on cells in array units, likewise.
     Values CellResult(Values given, bool keepDetail, const ParallelFor& parallel) const;
   };

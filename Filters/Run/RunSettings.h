@@ -117,6 +117,7 @@ struct ModelTraits
   const char* ResultSuffix = ""; ///< of the name of the result, after that of the data
   bool StateIsUnitVectors = false;
   bool StateIsLines = false; ///< unit vectors whose sign has no meaning
+  double Period = 0.0; ///< of the data, see Angles.h; 0: none
   VectorType Vectors = VectorType::Components;
   bool DropsNormalPart = true; ///< of tangent vectors
   bool CanBeDistributed = true; ///< solved by processes with a piece of the surface each

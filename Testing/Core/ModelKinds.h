@@ -144,6 +144,7 @@ inline std::vector<ModelKind> AllModelKinds()
       "HeatExponentialOnCells", 2,
       [](Heat& s) { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential; },
       Content::ColorsOnCells),
+    MakeKind<Heat>("HeatPeriodic", 2, [](Heat& s) { s.Period = 1.5; }),
     MakeKind<Heat>(
       "HeatTangent", 3, [](Heat& s) { s.Vectors.Type = VectorType::Tangent; },
       Content::UnitVectors),

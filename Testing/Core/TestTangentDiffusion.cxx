@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "KindsOfNoise.h"
 #include "Meshes.h"
 
 #include "Core/Vectors/TangentDiffusion.h"
@@ -233,16 +234,8 @@ TEST(TangentDiffusion, DropsKeepsOrDiffusesTheNormalPart)
     heights[i] = height(s.Vertices.row(i));
   }
   HeatSettings settings = Tangent(VectorLaplacian::Connection, 0.1);
-  const Vector diffused = Heat(
-    s.Vertices, s.Faces, heights,
-    settings =
-      [&]
-    {
-      HeatSettings scalar = settings;
-      scalar.Vectors.Type = VectorType::Components;
-      return scalar;
-    }())
-                            .Result;
+  settings.Vectors.Type = VectorType::Components;
+  const Vector diffused = Heat(s.Vertices, s.Faces, heights, settings).Result;
   settings.Vectors.Type = VectorType::Tangent;
   const auto normalPart = [&](NormalPart part) -> Vector
   {

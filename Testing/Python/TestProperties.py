@@ -69,7 +69,7 @@ DATA = dict(
 DEFAULTS = {
     "vtkFVMHeatFilter": {
         **DATA, "TimeIntegrator": "Automatic", "MassMatrix": "Automatic", "Mode": "TimeSteps", "FWHM": 0.0,
-        "VectorType": "Automatic", "VectorLaplacian": "Connection", "NormalPart": "Drop",
+        "Period": 0.0, "VectorType": "Automatic", "VectorLaplacian": "Connection", "NormalPart": "Drop",
         "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4},
     "vtkIntrinsicTVFilter": {
         **DATA, "TimeIntegrator": "FirstOrder", "FidelityWeight": 3.0, "InitialFill": "Mean", "Tolerance": 1e-3, "Mode": "TimeSteps",

@@ -156,6 +156,15 @@ inline std::vector<FilterKind> AllFilters()
         f->SetMassMatrixToMixed();
       }),
     MakeKind<Heat>("HeatMixed", "fDiffused", 2, [](Heat* f) { f->SetMassMatrixToMixed(); }),
+    MakeKind<Heat>("HeatPeriodic", "fDiffused", 2, [](Heat* f) { f->SetPeriod(0.7); }),
+    MakeKind<Heat>("HeatPeriodicOfCells", "cDiffused", 2,
+      [](Heat* f)
+      {
+        f->SetPeriod(0.7);
+        f->SetModeToSteadyState();
+        f->AutomaticFidelityOn();
+        SetInputArray(f, 0, "c", true);
+      }),
     MakeKind<Heat>("HeatTangent", "e1Diffused", 2,
       [](Heat* f)
       {

@@ -255,6 +255,7 @@ inline List OfHeat()
     RANDOM_PROPERTY(F, Mode, dice.Flip(3)),
     RANDOM_PROPERTY(F, FWHM, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, MassMatrix, Choice(dice, 3)),
+    RANDOM_PROPERTY(F, Period, dice.Flip(6) ? Positive(dice) : 0.0),
     RANDOM_PROPERTY(F, VectorType, Choice(dice, dice.Flip(3) ? 3 : 2)),
     RANDOM_PROPERTY(F, VectorLaplacian, Choice(dice, 3)),
     RANDOM_PROPERTY(F, NormalPart, Choice(dice, 3)),
