@@ -15,6 +15,7 @@
  * | Curl | vectors, 3k components | k: the curl about the normals of the surface |
  * | Laplacian | k components | k: the divergence of the gradient, per length^2 |
  * | ConductionVelocity | times T, k components | 3k: grad T/\|grad T\|^2, and `Speed`, k: 1/\|grad T\| |
+ * | Helmholtz | vectors, 3k components | k: `GradientPotential` phi and `CurlPotential` psi, and 3k: `GradientPart`, `CurlPart`, `HarmonicPart` |
  *
  * Times in ms on coordinates in mm give velocities in mm/ms = m/s. Where T does not change, the
  * velocity is not defined and is 0. `Speed` has the name of the data before it, or ResultArrayName.
@@ -34,6 +35,13 @@
  * of the points at most two edges from it, or NaN, with a warning, if these are too few, as on a strip
  * of one row of cells. On planes all are exact for linear functions and fields, at the boundary, too,
  * and the Laplacian there for quadratic functions.
+ *
+ * Helmholtz splits vectors v_t on the triangles into grad(phi) + n x grad(psi) + h, orthogonal in the
+ * sum of a_t v_t . w_t to 1e-12: phi and psi are linear on triangles, K phi and K psi the sums of
+ * a_t v_t . grad(phi_i) and a_t v_t . (n x grad(phi_i)), psi is 0 on boundaries, and both have the mean
+ * 0 on connected components otherwise, with a sign that follows the normals for psi. Parts at points
+ * are the means of those of the triangles around. The five arrays have the name of the data before
+ * theirs, or ResultArrayName; of the first, that alone. On surfaces with one side psi is 0.
  *
  * The gradient at points has an error of second order in the length of the edges inside of even
  * meshes, and of first order on others and at boundaries. The Laplacian inside is -K u/A with the
@@ -84,7 +92,8 @@ public:
     QUANTITY_DIVERGENCE = 1,
     QUANTITY_CURL = 2,
     QUANTITY_LAPLACIAN = 3,
-    QUANTITY_CONDUCTION_VELOCITY = 4
+    QUANTITY_CONDUCTION_VELOCITY = 4,
+    QUANTITY_HELMHOLTZ = 5
   };
 
   ///@{
@@ -97,6 +106,7 @@ public:
   void SetQuantityToCurl() { this->SetQuantity(QUANTITY_CURL); }
   void SetQuantityToLaplacian() { this->SetQuantity(QUANTITY_LAPLACIAN); }
   void SetQuantityToConductionVelocity() { this->SetQuantity(QUANTITY_CONDUCTION_VELOCITY); }
+  void SetQuantityToHelmholtz() { this->SetQuantity(QUANTITY_HELMHOLTZ); }
   ///@}
 
   /**

@@ -4,6 +4,8 @@
 
 #include "Core/Geometry/CellFits.h"
 #include "Core/Geometry/HeatRegression.h"
+#include "Core/Geometry/Helmholtz.h"
+#include "Core/Vectors/TangentPlanes.h"
 #include "Run/CellFields.h"
 
 #include <algorithm>
@@ -39,12 +41,15 @@ Values MeansOfCorners(const TriangleMesh& mesh, const Values& ofVertices)
 
 void DerivativesSettings::Visit(SettingVisitor& visitor)
 {
-  visitor.Choice({ "Quantity", "",
-                   "What is computed: the Gradient of each component, a vector in the tangent "
-                   "plane; the Divergence or the Curl, its component along the normals, of "
-                   "vectors; the Laplacian of each component; or the ConductionVelocity of "
-                   "arrival times T, grad T/|grad T|^2, with its length, the speed." },
-    this->Quantity, { "Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity" });
+  visitor.Choice(
+    { "Quantity", "",
+      "What is computed: the Gradient of each component, a vector in the tangent "
+      "plane; the Divergence or the Curl, its component along the normals, of "
+      "vectors; the Laplacian of each component; the ConductionVelocity of "
+      "arrival times T, grad T/|grad T|^2, with its length, the speed; or Helmholtz: "
+      "the potentials of vectors and the parts that are a gradient, a curl, and neither." },
+    this->Quantity,
+    { "Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity", "Helmholtz" });
   visitor.Number({ "SmoothingFWHM", "coordinates",
                    "Full width at half maximum of the Gaussian on the surface that smooths the "
                    "data first, in the unit of the coordinates: each value becomes that of the "
@@ -72,11 +77,12 @@ void DerivativesSettings::Check(const FieldSummary* fields, Problems& problems)
   }
   else if (this->TakesVectors() && fields->DataComponents % 3 != 0)
   {
-    const bool isCurl = this->Quantity == DerivativeQuantity::Curl;
+    const char* const words[] = { "Gradient", "Divergence", "Curl", "Laplacian",
+      "ConductionVelocity", "Helmholtz" };
     Sentence text(fields->DataName);
     text << " has " << fields->DataComponents << " components; allowed with "
          << Word::Setting("Quantity") << " "
-         << Word::Choice("Quantity", this->Quantity, isCurl ? "Curl" : "Divergence")
+         << Word::Choice("Quantity", this->Quantity, words[static_cast<int>(this->Quantity)])
          << ": 3, the vectors, or a multiple of 3";
     problems.push_back(text);
   }
@@ -178,8 +184,15 @@ void DerivativesRun::Update(
       ofTriangles.row(t) =
         fields.Data.Values.row(fields.Cells[surface.InputTriangle(mesh.InputTriangle()[t])]);
     }
-    const Values found = isCurl ? operators.Curl(ofTriangles) : operators.Divergence(ofTriangles);
-    this->AddResult(isCurl ? "Curl" : "Divergence", found / unit, settings);
+    if (settings.Quantity == DerivativeQuantity::Helmholtz)
+    {
+      this->AddParts(operators, ofTriangles, settings, progress.Part(0.35, 0.9));
+    }
+    else
+    {
+      const Values found = isCurl ? operators.Curl(ofTriangles) : operators.Divergence(ofTriangles);
+      this->AddResult(isCurl ? "Curl" : "Divergence", found / unit, settings);
+    }
   }
   else
   {
@@ -193,6 +206,14 @@ void DerivativesRun::Update(
       case DerivativeQuantity::Curl:
         this->AddResult("Curl", operators.CurlOfVertices(u) / unit, settings);
         break;
+      case DerivativeQuantity::Helmholtz:
+      {
+        const TangentPlanes planes(surface.SharedInputMesh(), positions, this->Parallel);
+        const Values tangent = planes.Vectors(planes.Coordinates(u), Values());
+        this->AddParts(
+          operators, operators.ToTriangles(tangent), settings, progress.Part(0.6, 0.95));
+        break;
+      }
       case DerivativeQuantity::Laplacian:
       {
         const Values found = operators.Laplacian(u);
@@ -252,6 +273,30 @@ Values DerivativesRun::ReadAtVertices(const Fields& fields, const Derivatives& o
     this->MissedResidual = std::max(this->MissedResidual, fits.MissedResidual);
   }
   return u;
+}
+
+void DerivativesRun::AddParts(const Derivatives& operators, const Values& ofTriangles,
+  const DerivativesSettings& settings, const ProgressMonitor& progress)
+{
+  HelmholtzParts parts = DecomposeVectors(
+    this->Domain->SharedInputMesh(), operators, ofTriangles, this->Parallel, progress);
+  this->MissedResidual = std::max(this->MissedResidual, parts.MissedResidual);
+  const double unit = this->Domain->InputMesh().LengthUnit();
+  this->AddResult("GradientPotential", parts.GradientPotential * unit, settings);
+  this->AddResult("CurlPotential", parts.CurlPotential * unit, settings);
+  const auto add = [&](const char* name, const Values& part)
+  {
+    this->Add(
+      name, settings.ResultOnCells ? part : operators.ToVertices(part), settings.ResultOnCells);
+  };
+  add("GradientPart", parts.GradientPart);
+  add("CurlPart", parts.CurlPart);
+  add("HarmonicPart", parts.HarmonicPart);
+  for (std::size_t k = 1; k < this->Results.size(); ++k)
+  {
+    this->Results[k].IsBesideResult = true;
+    this->Results[k].Active = Role::None;
+  }
 }
 
 void DerivativesRun::AddVelocity(Values gradients, bool onTriangles)

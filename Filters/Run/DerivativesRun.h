@@ -16,7 +16,8 @@ enum class DerivativeQuantity
   Divergence, ///< of vectors
   Curl, ///< of vectors: the normal component
   Laplacian, ///< of scalars
-  ConductionVelocity ///< of times: grad T/|grad T|^2
+  ConductionVelocity, ///< of times: grad T/|grad T|^2
+  Helmholtz ///< the parts of vectors, see HelmholtzParts
 };
 
 /// Derivatives in the user's terms.
@@ -34,7 +35,7 @@ struct DerivativesSettings : Settings
   bool TakesVectors() const
   {
     return this->Quantity == DerivativeQuantity::Divergence ||
-      this->Quantity == DerivativeQuantity::Curl;
+      this->Quantity == DerivativeQuantity::Curl || this->Quantity == DerivativeQuantity::Helmholtz;
   }
 };
 
@@ -60,6 +61,8 @@ private:
   Values ReadAtVertices(const Fields& fields, const Derivatives& operators, const Points& positions,
     double fwhm, const ProgressMonitor& progress);
   void AddResult(const char* name, Values ofVertices, const DerivativesSettings& settings);
+  void AddParts(const Derivatives& operators, const Values& ofTriangles,
+    const DerivativesSettings& settings, const ProgressMonitor& progress);
   void AddVelocity(Values gradients, bool onTriangles);
   void Add(const char* name, Values rows, bool onTriangles);
 

@@ -25,6 +25,7 @@
 `curl`                curls of vectors about the normals
 `laplacian`           Laplacians of data
 `conduction_velocity` velocities of waves from arrival times
+`helmholtz`           gradient, curl and harmonic parts of vectors
 `estimate_fwhm`       the smoothness of noise maps
 `smooth_to_fwhm`      smoothing up to a given smoothness
 `smooth_img`          smoothing of surface images of nilearn

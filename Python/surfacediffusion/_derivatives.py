@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._functions import SHARED, derivatives
-from ._result import ConductionVelocity
+from ._result import ConductionVelocity, HelmholtzParts
 from ._surface import SurfaceLike
 
-__all__ = ["conduction_velocity", "curl", "divergence", "gradient", "laplacian"]
+__all__ = ["conduction_velocity", "curl", "divergence", "gradient", "helmholtz", "laplacian"]
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -186,3 +186,46 @@ def conduction_velocity(surface: SurfaceLike, times: ArrayLike, **others: Any) -
     """
     found: Any = derivatives(surface, times, quantity="ConductionVelocity", _outputs=[], **others)
     return ConductionVelocity(found.values, found.speed)
+
+
+@_with_arguments
+def helmholtz(surface: SurfaceLike, vectors: ArrayLike, **others: Any) -> HelmholtzParts:
+    """Split tangent vectors into a gradient, a curl and a harmonic part.
+
+    On the triangles u = grad(phi) + n x grad(psi) + h, three parts that are orthogonal in the integral
+    over the surface to 1e-12. phi and psi are linear on each triangle; psi is 0 on boundaries, and
+    otherwise both have the mean 0 on each connected part. h has neither divergence nor curl: flow around
+    the holes of the surface, and across and along its boundaries. Smoothing phi and psi by
+    :func:`heat` or :func:`scale_filter` filters u by scale and commutes with divergence and curl.
+
+    Parameters
+    ----------
+    {surface}
+    vectors : array_like, shape (n, 3), (n, 3 k), (m, 3) or (m, 3 k)
+        Vectors in space at points or faces, whose tangential parts count; NaN is missing.
+    {others}
+
+    Returns
+    -------
+    HelmholtzParts
+        `gradient_potential` phi and `curl_potential` psi, (n,) or (n, k); `gradient_part`, `curl_part`
+        and `harmonic_part`, (n, 3) or (n, 3 k), at points the means over the triangles around. With
+        `result_on_faces` all are at the faces.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from surfacediffusion import helmholtz, sphere
+    >>> surface = sphere(5)
+    >>> spin = np.cross([0.0, 0.0, 1.0], surface.points)
+    >>> found = helmholtz(surface, spin)
+    >>> bool(np.abs(found.curl_potential + surface.points[:, 2]).max() < 0.01)
+    True
+    >>> bool(np.abs(found.gradient_part).max() < 1e-3)
+    True
+    """
+    outputs: list[Any] = []
+    derivatives(surface, vectors, quantity="Helmholtz", _name="vectors", _outputs=outputs, **others)
+    named = {output.name: output.values for output in outputs}
+    return HelmholtzParts(*(named[name] for name in (
+        "GradientPotential", "CurlPotential", "GradientPart", "CurlPart", "HarmonicPart")))

@@ -911,8 +911,8 @@ def derivatives(
 ) -> NDArray[np.float64]:
     """Compute derivatives of data in the tangent planes of a surface.
 
-    :func:`gradient`, :func:`divergence`, :func:`curl`, :func:`laplacian` and
-    :func:`conduction_velocity` are this function with a `quantity`.
+    :func:`gradient`, :func:`divergence`, :func:`curl`, :func:`laplacian`, :func:`conduction_velocity`
+    and :func:`helmholtz`, which has all parts, are this function with a `quantity`.
 
     On a triangle the gradient is that of the linear function; at a point it is the mean of those
     around it, weighted by area, in the tangent plane. The divergence d of vectors v at a point with
@@ -970,7 +970,7 @@ def derivatives(
     surface = as_surface(surface)
     whole = whole or "_outputs" in properties
     name = properties.pop("_name", "values")
-    if properties.get("quantity", "") in ("Divergence", "divergence", "Curl", "curl"):
+    if str(properties.get("quantity", "")).lower() in ("divergence", "curl", "helmholtz"):
         shape, n, m = np.shape(as_numbers(name, values)), surface.n_points, surface.n_faces
         require_shape(name, values, len(shape) in (1, 2) and shape[0] in (n, m), (
             f"({n}, 3) or ({n}, 3 k), one row of 1 or k vectors per point, or ({m}, 3) or ({m}, 3 k), one per face"))

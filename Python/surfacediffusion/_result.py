@@ -243,6 +243,16 @@ class DerivativesResult(ArrayResult):
     warnings: list[str] = field(repr=False)
 
 
+class HelmholtzParts(NamedTuple):
+    """Vectors on a surface as the sum of a gradient, a curl and a part that is neither."""
+
+    gradient_potential: NDArray[np.float64]  #: phi, (n,), in the unit of the vectors times that of the coordinates
+    curl_potential: NDArray[np.float64]  #: psi, (n,)
+    gradient_part: NDArray[np.float64]  #: grad(phi), (n, 3)
+    curl_part: NDArray[np.float64]  #: n x grad(psi), (n, 3)
+    harmonic_part: NDArray[np.float64]  #: the rest, (n, 3)
+
+
 class ConductionVelocity(NamedTuple):
     """The velocity of a wave on a surface, and its length, the speed."""
 

@@ -36,7 +36,7 @@ OF_MESHES = {"values": "array", "vectors": "array", "directions": "direction", "
 
 #: The functions without a filter of their own, and what holds them.
 WITHOUT_FILTER = {
-    **dict.fromkeys(("gradient", "divergence", "curl", "laplacian", "conduction_velocity"),
+    **dict.fromkeys(("gradient", "divergence", "curl", "laplacian", "conduction_velocity", "helmholtz"),
                     "derivatives() with a quantity"),
     **dict.fromkeys(("nearest_sources", "distances"), "the run of distance()"),
     **dict.fromkeys(("estimate_fwhm", "smooth_to_fwhm", "surrogates", "spectrum"),

@@ -138,7 +138,8 @@ EDGE_FUNCTIONS = ("TotalVariation", "PeronaMalikExponential", "PeronaMalikRation
                   "Weickert", "Constant")
 WORDS = {
     "Covariance": ("Gaussian", "MaternNu1", "MaternNu3"),
-    "Quantity": ("Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity"),
+    "Quantity": ("Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity",
+                 "Helmholtz"),
     "Units": ("Natural", "Absolute"), "MaskMode": ("Inpaint", "Exclude"),
     "InitialFill": ("Input", "Mean", "Noise", "Harmonic"), "Mode": ("TimeSteps", "SteadyState"),
     "TimeIntegrator": ("FirstOrder", "SecondOrder", "Implicit", "Exponential", "Automatic"),

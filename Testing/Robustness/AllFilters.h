@@ -467,6 +467,16 @@ inline std::vector<FilterKind> AllFilters()
         return filter;
       },
       "fGradient" },
+    { "Helmholtz",
+      []
+      {
+        auto filter = vtkSmartPointer<vtkSurfaceDerivativesFilter>::New();
+        SetInputArray(filter, 0, "e1");
+        SetInputArray(filter, 1, "mask");
+        filter->SetQuantityToHelmholtz();
+        return filter;
+      },
+      "e1GradientPotential" },
     { "ConductionVelocity",
       []
       {

@@ -58,14 +58,16 @@ public:
 
   const OrientedNormals& Normals() const { return this->Oriented; }
 
-private:
   /// grad phi_a of corner a of triangle t.
   Eigen::RowVector3d BasisGradient(Index t, int a) const;
+  /// v_t, m x 3k, of vectors at vertices.
+  Values ToTriangles(const Values& ofVertices) const;
+
+private:
   /// The sum over corners 3 t + a and boundary edges. onTriangle(corner, c): v_t. onEdge(corner, i, j,
   /// c): the mean of phi_i v over the edge from i to j. Both of column c.
   template <typename OnTriangle, typename OnEdge>
   Values SumFluxes(Eigen::Index columns, const OnTriangle& onTriangle, const OnEdge& onEdge) const;
-  Values ToTriangles(const Values& ofVertices) const;
   /// turn(v, corner): v, or v x n.
   template <typename Turn>
   Values SumOfTriangles(const Values& ofTriangles, const Turn& turn) const;
