@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ArrayResult", "ConductionVelocity", "CurvatureResult", "DerivativesResult", "DiffusionResult",
-    "EdgeResult", "HarmonicMapResult", "InterpolationResult", "MeshDenoisingResult", "ModelResult", "RegionBoundary",
+    "EdgeResult", "HarmonicMapResult", "HelmholtzParts", "InterpolationResult", "MeshDenoisingResult", "ModelResult", "RegionBoundary",
     "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
 ]
 
