@@ -7,51 +7,25 @@ within the water, not across land.
 """
 import numpy as np
 from surfacediffusion import interpolate, random_field, scale_filter, spectrum, sphere
-from surfacediffusion.examples import show
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkFiltersHybrid import vtkEarthSource
+from surfacediffusion.examples import land, show
 
 earth = sphere(5, radius=6371.0)
 
 # %%
-# vtkEarthSource has the coasts as polygons. A point is land if an odd number of edges of polygons lies
-# to its north.
-source = vtkEarthSource()
-source.OutlineOn()
-source.Update()
-coasts = source.GetOutput()
-places = vtk_to_numpy(coasts.GetPoints().GetData()).astype(float)
-
-
-def angles(points):
-    points = points / np.linalg.norm(points, axis=1, keepdims=True)
-    return np.degrees(np.arctan2(points[:, 1], points[:, 0])), np.degrees(np.arcsin(points[:, 2]))
-
-
-longitude, latitude = angles(earth.points)
-east, north = angles(places)
-land = np.zeros(earth.n_points, bool)
-lines = coasts.GetLines()
-offsets = vtk_to_numpy(lines.GetOffsetsArray())
-corners = vtk_to_numpy(lines.GetConnectivityArray())
-for start, end in zip(offsets[:-1], offsets[1:]):
-    chain = corners[start:end]
-    for a, b in zip(chain, np.roll(chain, -1)):
-        # Degrees from each point to both ends, and where the edge crosses the point's meridian.
-        to_a, to_b = ((east[i] - longitude + 180) % 360 - 180 for i in (a, b))
-        between = (to_a * to_b < 0) & (abs(to_a - to_b) < 180)
-        at = north[a] + (north[b] - north[a]) * to_a / np.where(between, to_a - to_b, 1)
-        land ^= between & (at > latitude)
-print(f"{100 * land.mean():.0f} % land")
+# VTK has the coasts as polygons. A point is land if an odd number of their edges lies to its north.
+dry = land(earth)
+latitude = np.degrees(np.arcsin(earth.points[:, 2] / 6371.0))
+longitude = np.degrees(np.arctan2(earth.points[:, 1], earth.points[:, 0]))
+print(f"{100 * dry.mean():.0f} % land")
 
 # %%
 # 400 buoys, with an error of 1 degree. The other points are NaN, which is missing.
 random = np.random.default_rng(0)
 truth = 30 * np.cos(np.radians(latitude)) ** 2 - 2 + 3 * np.sin(np.radians(3 * longitude))
-buoys = random.choice(np.flatnonzero(~land), 400, replace=False)
+buoys = random.choice(np.flatnonzero(~dry), 400, replace=False)
 measured = np.full(earth.n_points, np.nan)
 measured[buoys] = truth[buoys] + random.normal(scale=1.0, size=buoys.size)
-water = earth.triangles[~land[earth.triangles].any(axis=1)]
+water = earth.triangles[~dry[earth.triangles].any(axis=1)]
 used = np.unique(water)
 number = np.full(earth.n_points, -1)
 number[used] = np.arange(used.size)
@@ -67,8 +41,8 @@ show(earth.points, earth.triangles, {"buoys": measured, "temperature": temperatu
 # %%
 # Eddies of some 500 km, which no buoy resolves, on top of the temperature. The filter by scale leaves what is
 # longer than 3,000 km, within the water: land is NaN and takes no part.
-eddies = random_field(earth, 1, fwhm=500, mask=land)[:, 0]
-sea = np.where(land, np.nan, truth + eddies)
+eddies = random_field(earth, 1, fwhm=500, mask=dry)[:, 0]
+sea = np.where(dry, np.nan, truth + eddies)
 large = scale_filter(earth, sea, 3000, order=2)
 show(earth.points, earth.triangles, {"with eddies": sea, "above 3,000 km": large, "eddies": sea - large},
      view=(-0.5, -1, 0.4), up=(0, 0, 1), cmap="coolwarm", nan_color="white")
@@ -76,6 +50,6 @@ assert np.corrcoef((sea - large)[np.isfinite(large)], eddies[np.isfinite(large)]
 
 # %%
 # The variance of the eddies between wavelengths, in km and degrees squared.
-found = spectrum(earth, np.where(land, np.nan, eddies), [1000, 2000, 4000, 8000])
+found = spectrum(earth, np.where(dry, np.nan, eddies), [1000, 2000, 4000, 8000])
 for low, high, variance in zip([0, *found.wavelength], [*found.wavelength, np.inf], found.variance):
     print(f"{low:5.0f} to {high:5.0f} km: {variance:.2f}")

@@ -24,9 +24,9 @@ from pathlib import Path
 from typing import Any, Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["fetch", "show"]
+__all__ = ["fetch", "land", "show"]
 
 #: The package of each file, its path there, and its SHA-256.
 FILES = {
@@ -98,6 +98,48 @@ def _find(package: str, member: str) -> Path | None:
             _unpacked[member] = Path(opened.extract(f"{package}/{member}", copies.name))
         return _unpacked[member]
     return None
+
+
+def land(earth: Any) -> NDArray[np.bool_]:
+    """Return which points of a sphere about the origin, with the North Pole at +z, are on land, by the coasts of
+    VTK's vtkEarthSource.
+
+    A point is on land if an odd number of edges of coasts lies to its north.
+
+    Parameters
+    ----------
+    earth : Surface
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkFiltersHybrid import vtkEarthSource
+
+    def angles(points: Any) -> tuple[Any, Any]:
+        points = points / np.linalg.norm(points, axis=1, keepdims=True)
+        return np.degrees(np.arctan2(points[:, 1], points[:, 0])), np.degrees(np.arcsin(points[:, 2]))
+
+    source = vtkEarthSource()
+    source.OutlineOn()
+    source.Update()
+    coasts = source.GetOutput()
+    longitude, latitude = angles(earth.points)
+    east, north = angles(vtk_to_numpy(coasts.GetPoints().GetData()).astype(float))
+    inside = np.zeros(earth.n_points, bool)
+    lines = coasts.GetLines()
+    offsets = vtk_to_numpy(lines.GetOffsetsArray())
+    corners = vtk_to_numpy(lines.GetConnectivityArray())
+    for start, end in zip(offsets[:-1], offsets[1:]):
+        chain = corners[start:end]
+        for a, b in zip(chain, np.roll(chain, -1)):
+            # Degrees from each point to both ends, and where the edge crosses the point's meridian.
+            to_a, to_b = ((east[i] - longitude + 180) % 360 - 180 for i in (a, b))
+            between = (to_a * to_b < 0) & (abs(to_a - to_b) < 180)
+            at = north[a] + (north[b] - north[a]) * to_a / np.where(between, to_a - to_b, 1)
+            inside ^= between & (at > latitude)
+    return inside
 
 
 def show(
