@@ -280,13 +280,21 @@ NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
 {
   const Assembler& assembler = *this->Inputs.Surface.SharedAssembler();
   const Points& points = this->Inputs.Surface.Points();
-  NoiseEstimate found = EstimateNoise(assembler, this->Pattern, points, this->Data, range, true);
+  NoisyCoordinates coordinates;
+  if (this->Task.Planes)
+  {
+    coordinates = [&](Index i, const Eigen::RowVectorXd& row)
+    { return this->Task.Planes->CoordinatesAt(i, row); };
+  }
+  NoiseEstimate found =
+    EstimateNoise(assembler, this->Pattern, points, this->Data, range, true, coordinates);
   const VertexRange all{ 0, this->Inputs.Surface.Mesh().NumberOfVertices() };
   if (found.IsUndetermined && range.Size() < all.Size())
   {
     if (!this->OfAll)
     {
-      this->OfAll = EstimateNoise(assembler, this->Pattern, points, this->Data, all, true);
+      this->OfAll =
+        EstimateNoise(assembler, this->Pattern, points, this->Data, all, true, coordinates);
     }
     found = *this->OfAll;
   }
@@ -308,9 +316,7 @@ ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
   const NoiseEstimate estimate = this->Estimate(range, notes);
   const double between =
     estimate.BetweenNeighbours * (this->Inputs.Cells ? this->Task.CellNoiseGain : 1.0);
-  // Two of three dimensions have it.
-  const double gain = this->Task.Planes ? std::sqrt(1.5) : 1.0;
-  const double estimated = gain * (this->Inputs.Cells ? between : estimate.Level());
+  const double estimated = this->Inputs.Cells ? between : estimate.Level();
   if (!isGiven && !this->Inputs.Cells && !estimate.IsCorrelated() && this->Parts.empty())
   {
     this->NoteSmoothData(this->Data.FidelityFactors.size() > 0
@@ -334,7 +340,7 @@ ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
   }
   // Noise of more than the differences between neighbours is not white. That of cells is taken for it.
   const bool isWhite = estimate.IsUndetermined || this->Inputs.Cells ||
-    level <= NoiseEstimate::CorrelatedGrowth * gain * between;
+    level <= NoiseEstimate::CorrelatedGrowth * between;
   return { level, isWhite };
 }
 
@@ -466,8 +472,13 @@ void ColumnSearch::Advance(const FidelityModelMaker& makeModel)
     {
       const int needed =
         part.Search->NeedsRisk() ? NumberOfRiskDirections(part.Vertices.Size()) : 0;
-      part.Search->Take(MeasureNoiseResponse(this->Inputs.Surface.Mesh(), this->Compared, state,
-        changed, this->Directions, needed, RiskStep * part.Noise, part.Vertices));
+      NoiseResponse response = MeasureNoiseResponse(this->Inputs.Surface.Mesh(), this->Compared,
+        state, changed, this->Directions, needed, RiskStep * part.Noise, part.Vertices);
+      if (this->Task.Planes)
+      {
+        response.Scale(1.5); // two of three dimensions have noise
+      }
+      part.Search->Take(response);
     }
   }
 }

@@ -38,7 +38,7 @@ struct TangentShare
   }
   bool AreTangent() const { return this->Known > 0.0 && this->Tangent >= 0.9 * this->Known; }
   /// Too many for chance, and too few for tangent vectors.
-  bool IsPartly() const { return !this->AreTangent() && this->Tangent >= 0.5 * this->Known; }
+  bool IsPartly() const { return this->Known > 0.0 && !this->AreTangent() && this->Tangent >= 0.5 * this->Known; }
 };
 
 /// Collective.

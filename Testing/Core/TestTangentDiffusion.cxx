@@ -24,10 +24,9 @@ namespace
 {
 
 using Row = Eigen::RowVector3d;
-using Testing::Surface;
 
 /// Per point the value of a function of the place.
-Values Field(const Surface& s, const std::function<Row(const Row&)>& f)
+Values Field(const Testing::Surface& s, const std::function<Row(const Row&)>& f)
 {
   Values values(s.Vertices.rows(), 3);
   for (Eigen::Index i = 0; i < values.rows(); ++i)
@@ -67,7 +66,7 @@ double RelativeError(const Values& a, const Values& b)
 }
 
 /// The largest part of vectors along the normals of the unit sphere.
-double LargestNormalPart(const Surface& s, const Values& u)
+double LargestNormalPart(const Testing::Surface& s, const Values& u)
 {
   return s.Vertices.cwiseProduct(u).rowwise().sum().cwiseAbs().maxCoeff();
 }
@@ -99,7 +98,7 @@ TEST(TangentDiffusion, DecaysAtTheRatesOfTheThreeLaplaciansWithSecondOrder)
     {
       const auto errorOn = [&](int level)
       {
-        const Surface s = Testing::Icosphere(level);
+        const Testing::Surface s = Testing::Icosphere(level);
         const Values f = Field(s, decay.Field);
         HeatSettings settings = Tangent(static_cast<VectorLaplacian>(laplacian), time / 10.0);
         settings.TimeIntegrator = TimeIntegrator::SecondOrder;
@@ -124,8 +123,9 @@ TEST(TangentDiffusion, DecaysAtTheRatesOfTheThreeLaplaciansWithSecondOrder)
 
 TEST(TangentDiffusion, KeepsConstantsOfThePlaneAndTheParallelFieldsOfCylinders)
 {
-  const Surface plate = Testing::Jittered(Testing::Strip(12, 12), 0.03, 0.001, 0.999, 0.001, 0.999);
-  const Surface cylinder = Testing::Cylinder(16, 8);
+  const Testing::Surface plate =
+    Testing::Jittered(Testing::Strip(12, 12), 0.03, 0.001, 0.999, 0.001, 0.999);
+  const Testing::Surface cylinder = Testing::Cylinder(16, 8);
   for (const VectorLaplacian laplacian : { VectorLaplacian::Connection, VectorLaplacian::Hodge })
   {
     const HeatSettings settings = Tangent(laplacian, 0.1);
@@ -144,7 +144,7 @@ TEST(TangentDiffusion, KeepsConstantsOfThePlaneAndTheParallelFieldsOfCylinders)
 
 TEST(TangentDiffusion, OnAPlaneIsDiffusionOfTheComponents)
 {
-  const Surface s = Testing::Strip(15, 15);
+  const Testing::Surface s = Testing::Strip(15, 15);
   const Values f = Field(s,
     [](const Row& p) -> Row {
       return { std::sin(9.0 * p.x()), p.y() * p.y(), 0.0 };
@@ -167,7 +167,7 @@ TEST(TangentDiffusion, OnAPlaneIsDiffusionOfTheComponents)
 // One vector at a pole, carried along meridians: the connection is the surface's own.
 TEST(TangentDiffusion, CarriesAVectorByParallelTransport)
 {
-  const Surface s = Testing::Icosphere(4);
+  const Testing::Surface s = Testing::Icosphere(4);
   Values f = Values::Zero(s.Vertices.rows(), 3);
   Eigen::Index pole = 0;
   s.Vertices.col(2).maxCoeff(&pole);
@@ -193,14 +193,14 @@ TEST(TangentDiffusion, CarriesAVectorByParallelTransport)
 
 TEST(TangentDiffusion, DependsNeitherOnOrientationNorOnPlaceUnitsAndNumbering)
 {
-  const Surface s = Testing::Icosphere(3);
+  const Testing::Surface s = Testing::Icosphere(3);
   const auto rough = [](const Row& p) -> Row
   { return Row(std::sin(7.0 * p.y()), std::cos(5.0 * p.z()), p.x()); };
   const HeatSettings settings = Tangent(VectorLaplacian::Viscous, 0.02);
   const Values f = Field(s, rough);
   const Values u = Heat(s.Vertices, s.Faces, f, settings).Result;
 
-  Surface mixed = s;
+  Testing::Surface mixed = s;
   for (Eigen::Index t = 0; t < mixed.Faces.rows(); t += 3)
   {
     std::swap(mixed.Faces(t, 0), mixed.Faces(t, 1));
@@ -216,7 +216,7 @@ TEST(TangentDiffusion, DependsNeitherOnOrientationNorOnPlaceUnitsAndNumbering)
   const Values turned = Heat(moved, s.Faces, Values(f * turn.transpose()), scaled).Result;
   EXPECT_LT(RelativeError(turned, u * turn.transpose()), 1e-11);
 
-  const Surface other =
+  const Testing::Surface other =
     Testing::Renumbered(s, Testing::Permutation(static_cast<Index>(s.Vertices.rows()), 5));
   const Values renumbered = Heat(other.Vertices, other.Faces, Field(other, rough), settings).Result;
   EXPECT_NEAR(renumbered.norm(), u.norm(), 1e-11 * u.norm());
@@ -225,7 +225,7 @@ TEST(TangentDiffusion, DependsNeitherOnOrientationNorOnPlaceUnitsAndNumbering)
 // The part along the normal, of which Diffuse makes what the filter makes of a scalar.
 TEST(TangentDiffusion, DropsKeepsOrDiffusesTheNormalPart)
 {
-  const Surface s = Testing::Icosphere(3);
+  const Testing::Surface s = Testing::Icosphere(3);
   const auto height = [](const Row& p) { return 1.0 + p.z(); };
   const Values f = Field(s, [&](const Row& p) -> Row { return RotationAboutZ(p) + height(p) * p; });
   Vector heights(s.Vertices.rows());
@@ -258,7 +258,7 @@ struct Decision
   bool IsTangent;
 };
 
-Decision Decide(const Surface& s, const Values& f)
+Decision Decide(const Testing::Surface& s, const Values& f)
 {
   HeatSettings settings = Tangent(VectorLaplacian::Connection, 0.01);
   settings.Vectors.Type = VectorType::Automatic;
@@ -272,7 +272,7 @@ Decision Decide(const Surface& s, const Values& f)
 
 TEST(TangentDiffusion, IsChosenForTangentVectorsAndForNothingElse)
 {
-  const Surface s = Testing::Icosphere(3);
+  const Testing::Surface s = Testing::Icosphere(3);
   Values f = Field(s, RotationAboutZ);
   const Decision ofVectors = Decide(s, f);
   EXPECT_TRUE(ofVectors.IsTangent);
@@ -291,7 +291,7 @@ TEST(TangentDiffusion, IsChosenForTangentVectorsAndForNothingElse)
     EXPECT_EQ(decision.NumberOfWarnings, 0U);
   }
   // Coordinates of a plane, which lie in it.
-  const Surface plate = Testing::Strip(9, 9);
+  const Testing::Surface plate = Testing::Strip(9, 9);
   const Solution found = Heat(plate.Vertices, plate.Faces, Values(plate.Vertices), {});
   EXPECT_TRUE(found.Warnings.empty());
 
@@ -308,9 +308,9 @@ TEST(TangentDiffusion, IsChosenForTangentVectorsAndForNothingElse)
 
 TEST(TangentDiffusion, FillsHolesHoldsFixedVectorsAndFindsItsWeight)
 {
-  const Surface s = Testing::Icosphere(4);
+  const Testing::Surface s = Testing::Icosphere(4);
   const Values clean = Field(s, RotationAboutZ);
-  HeatSettings settings = Tangent(VectorLaplacian::Viscous, 0.0);
+  HeatSettings settings = Tangent(VectorLaplacian::Viscous, 1.0);
   settings.Mode = HeatMode::SteadyState;
   settings.HoldKnownValues = true;
   Fields fields;
@@ -331,7 +331,7 @@ TEST(TangentDiffusion, FillsHolesHoldsFixedVectorsAndFindsItsWeight)
     }
     noisy.row(i) -= noisy.row(i).dot(s.Vertices.row(i)) * Row(s.Vertices.row(i));
   }
-  HeatSettings found = Tangent(VectorLaplacian::Connection, 0.0);
+  HeatSettings found = Tangent(VectorLaplacian::Connection, 1.0);
   found.Mode = HeatMode::SteadyState;
   const auto errorAt = [&](double weight)
   {

@@ -39,12 +39,16 @@ double DeviationOfResidual(Index i, const LinearFit& fit, const Vector& factors)
 
 /// The estimate from the vertices at a distance of `edges` edges, of which there are enough around
 /// `count` vertices.
-double EstimateAt(int edges, const FitData& data, const Vector& factors, double& count)
+double EstimateAt(int edges, const FitData& data, const Vector& factors,
+  const NoisyCoordinates& coordinates, double& count)
 {
   const Eigen::Index columns = data.Given.cols();
   Rings rings = data.MakeRings();
   const Eigen::RowVectorXd roundOff = RoundOffOf(data);
-  RobustDeviations deviations(columns);
+  RobustDeviations deviations(coordinates
+      ? coordinates(data.Range.Begin, Eigen::RowVectorXd::Zero(columns)).size()
+      : columns);
+  Eigen::RowVectorXd residuals(columns);
   count = 0.0;
   for (const Index i : data.SampleVertices(LargestSample))
   {
@@ -61,19 +65,31 @@ double EstimateAt(int edges, const FitData& data, const Vector& factors, double&
     }
     count += 1.0;
     const double deviation = DeviationOfResidual(i, fit, factors);
+    bool varies = false;
+    const auto add = [&](Eigen::Index k, double residual)
+    { deviations.Add(k, std::abs(residual) / deviation); };
     for (Eigen::Index k = 0; k < columns; ++k)
     {
       double residual = 0.0;
-      bool varies = false;
+      varies = coordinates && varies;
       for (std::size_t j = 0; j < known.size(); ++j)
       {
         const double difference = data.Given(known[j], k) - data.Given(i, k);
         residual += weights[static_cast<Eigen::Index>(j)] * difference;
         varies = varies || std::abs(difference) > roundOff[k];
       }
-      if (varies)
+      residuals[k] = residual;
+      if (varies && !coordinates)
       {
-        deviations.Add(k, std::abs(residual) / deviation);
+        add(k, residual);
+      }
+    }
+    if (varies && coordinates)
+    {
+      const Eigen::RowVectorXd noisy = coordinates(i, residuals);
+      for (Eigen::Index k = 0; k < noisy.size(); ++k)
+      {
+        add(k, noisy[k]);
       }
     }
   }
@@ -144,7 +160,7 @@ NoiseEstimate EstimateNoise(
 
 NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pattern,
   const Eigen::Ref<const Points>& points, const PointData& given, VertexRange range,
-  bool isOfFactorOne)
+  bool isOfFactorOne, const NoisyCoordinates& coordinates)
 {
   const Vector none;
   const Vector& factors = isOfFactorOne ? given.FidelityFactors : none;
@@ -153,14 +169,14 @@ NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pat
   data.Missing = !FindVarying(data);
   NoiseEstimate estimate;
   double count = 0.0;
-  estimate.BetweenNeighbours = EstimateAt(1, data, factors, count);
+  estimate.BetweenNeighbours = EstimateAt(1, data, factors, coordinates, count);
   estimate.IsUndetermined = count == 0.0 && !(anyKnown && data.Missing.all());
   estimate.Apart = estimate.BetweenNeighbours;
   double apart = estimate.BetweenNeighbours;
   double growth = MostGrowth;
   for (int edges = 2; edges <= FarthestRing && apart > 0.0; edges *= 2)
   {
-    const double next = EstimateAt(edges, data, factors, count);
+    const double next = EstimateAt(edges, data, factors, coordinates, count);
     if (next <= NoiseEstimate::CorrelatedGrowth * apart)
     {
       estimate.Apart = apart;

@@ -54,12 +54,16 @@ Flags FindVaryingVertices(const Assembler& assembler, const SparsePattern& patte
 NoiseEstimate EstimateNoise(
   const Assembler& assembler, const Eigen::Ref<const Points>& points, const PointData& data);
 
+/// The coordinates of a row of values at vertex i that have noise, such as those of a vector in the
+/// tangent plane; empty: all columns.
+using NoisyCoordinates = std::function<Eigen::RowVectorXd(Index i, const Eigen::RowVectorXd& row)>;
+
 /// The same from the vertices of some connected components. pattern: that of the assembler.
 /// isOfFactorOne: the noise where the fidelity factor w is 1, if its variances are in proportion to
 /// 1/w: r_i is over sqrt(1/w_i + sum_j v_j^2/w_j).
 NoiseEstimate EstimateNoise(const Assembler& assembler, const SparsePattern& pattern,
   const Eigen::Ref<const Points>& points, const PointData& data, VertexRange range,
-  bool isOfFactorOne = false);
+  bool isOfFactorOne = false, const NoisyCoordinates& coordinates = {});
 
 /// What EstimateNoise() finds between neighbours, on average, in noise that is known everywhere and
 /// has the same distribution but not the same correlation as white noise of deviation 1.

@@ -21,6 +21,15 @@ struct NoiseResponse
   double Removed = 0.0; ///< of (p - J' p)^2
   double Direction = 0.0; ///< of p^2
 
+  void Scale(double factor)
+  {
+    for (double* const mean :
+      { &this->MeanSquare, &this->Freedom, &this->Removed, &this->Direction })
+    {
+      *mean *= factor;
+    }
+  }
+
   /// The unbiased estimate of the mean square error of u, but for a constant: the expectation of
   /// s^2 p J' p is that of the noise times u, sum_i A_i w_i var_i du_i/df_i over the area (C. Stein,
   /// Annals of Statistics 9, 1981).

@@ -80,6 +80,18 @@ Values TangentPlanes::Coordinates(const Values& vectors) const
   return coordinates;
 }
 
+Eigen::RowVectorXd TangentPlanes::CoordinatesAt(Index i, const Eigen::RowVectorXd& vectors) const
+{
+  Eigen::RowVectorXd coordinates(2 * (vectors.size() / 3));
+  for (Eigen::Index k = 0; k < coordinates.size() / 2; ++k)
+  {
+    const Eigen::Vector3d u = vectors.segment<3>(3 * k);
+    coordinates[2 * k] = this->X(i).dot(u);
+    coordinates[2 * k + 1] = this->Y(i).dot(u);
+  }
+  return coordinates;
+}
+
 Values TangentPlanes::NormalParts(const Values& vectors) const
 {
   const Eigen::Index columns = vectors.cols() / 3;

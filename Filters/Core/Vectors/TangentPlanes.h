@@ -30,6 +30,8 @@ public:
 
   /// Of n x 3m vectors the 2n x m coordinates: rows 2i and 2i + 1 are a and b of vertex i.
   Values Coordinates(const Values& vectors) const;
+  /// Of 3m numbers at vertex i the 2m coordinates.
+  Eigen::RowVectorXd CoordinatesAt(Index i, const Eigen::RowVectorXd& vectors) const;
   /// Of the same the n x m parts c.
   Values NormalParts(const Values& vectors) const;
   /// The n x 3m vectors of coordinates and normal parts; these may have no row: 0.
