@@ -48,12 +48,14 @@ void VectorSettings::Visit(SettingVisitor& visitor)
     { "VectorLaplacian", "",
       "The Laplacian of tangent vectors. Connection: that of the parallel transport, for "
       "smoothing and denoising. Hodge: commutes with divergence and curl. Viscous: that of "
-      "a viscous flow, which keeps rigid rotations." },
+      "a viscous flow, which keeps rigid rotations.",
+      "VectorType!=Components" },
     this->Laplacian, { "Connection", "Hodge", "Viscous" });
   visitor.Choice(
     { "NormalPart", "",
       "What becomes of the part of tangent vectors along the normal of the surface. Drop: it "
-      "is left out. Keep: it stays as it is. Diffuse: it is diffused as a scalar." },
+      "is left out. Keep: it stays as it is. Diffuse: it is diffused as a scalar.",
+      "VectorType!=Components" },
     this->NormalPart, { "Drop", "Keep", "Diffuse" });
 }
 
