@@ -23,6 +23,7 @@ void vtkIntrinsicTVFilter::UsePaperScheme()
   this->Superclass::UsePaperScheme();
   this->SetTimeIntegratorToFirstOrder();
   this->SetModeToTimeSteps();
+  this->SetRegularizerToTV();
   this->SetEdgeFunctionToTotalVariation();
   this->SetAcrossEdgeFunctionToSame();
   this->SetChannelCouplingToPerChannel();

@@ -53,6 +53,19 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "EdgeFunction=Constant) and AcrossEdgeFunction=Same) or Mode=SteadyState)) or "
                    "(BlurFWHM!=0 and Mode=TimeSteps)" },
     this->Mode, { "TimeSteps", "SteadyState" });
+  visitor.Choice({ "Regularizer", "",
+                   "What SteadyState minimises beside the fidelity. TV: total variation, of which "
+                   "plateaus with sharp edges have least; ramps become stairs. TGV: total "
+                   "generalised variation of second order, of which ramps and roofs have least, "
+                   "too; it takes longer. TGV requires Mode SteadyState, EdgeFunction "
+                   "TotalVariation, equal AlongDiffusivity and AcrossDiffusivity, Discretization "
+                   "Linear and BlurFWHM 0." },
+    this->Regularizer, { "TV", "TGV" });
+  visitor.Number({ "TGVLength", "h",
+                   "The length alpha of Regularizer TGV, above 0, in h. A bend of the data costs "
+                   "as much as a step that is alpha times the change of the slope. The longer it "
+                   "is, the more the result is like that of TV." },
+    this->TGVLength, SettingRange::Positive());
   visitor.Choice({ "EdgeFunction", "",
                    "The diffusivity g(s) of s = |grad u|, where K is the edge threshold. "
                    "TotalVariation: 1/sqrt(s^2 + beta). PeronaMalikExponential: exp(-(s/K)^2). "
@@ -126,6 +139,7 @@ void TotalVariationSettings::CheckTogether(const FieldSummary* fields, Problems&
 {
   this->DataSettings::CheckTogether(fields, problems);
   this->CheckBlur(problems);
+  this->CheckRegularizer(problems);
   this->CheckColorModel(fields, problems);
   if (this->Mode == TotalVariationMode::SteadyState)
   {
@@ -167,6 +181,35 @@ void TotalVariationSettings::CheckBlur(Problems& problems) const
     RequireChoice("Discretization", this->Discretization, SurfaceDiffusion::Discretization::Linear,
       "Linear", blur, problems);
     RequireChoice("ColorModel", this->Color.Model, ColorModel::RGB, "RGB", blur, problems);
+  }
+}
+
+void TotalVariationSettings::CheckRegularizer(Problems& problems) const
+{
+  if (this->Regularizer != SurfaceDiffusion::Regularizer::TGV)
+  {
+    return;
+  }
+  Sentence purpose = Word::Setting("Regularizer");
+  purpose << " " << Word::Choice("Regularizer", this->Regularizer, "TGV");
+  RequireChoice(
+    "Mode", this->Mode, TotalVariationMode::SteadyState, "SteadyState", purpose, problems);
+  RequireChoice("EdgeFunction", this->EdgeFunction, EdgeFunctionKind::TotalVariation,
+    "TotalVariation", purpose, problems);
+  RequireChoice("Discretization", this->Discretization, SurfaceDiffusion::Discretization::Linear,
+    "Linear", purpose, problems);
+  const Sentence with = Sentence(" together with ") << purpose;
+  Require(!(this->Blur.IsOn()), Word::Setting("BlurFWHM"), this->Blur.FWHM, Sentence("0") << with,
+    problems);
+  Require(this->AlongDiffusivity == this->AcrossDiffusivity, Word::Setting("AcrossDiffusivity"),
+    this->AcrossDiffusivity, Sentence("that of ") << Word::Setting("AlongDiffusivity") << with,
+    problems);
+  if (this->Color.Model == ColorModel::ChromaticityBrightness)
+  {
+    problems.push_back(Sentence(Word::Setting("ColorModel"))
+      << " is " << Word::Number("ColorModel", this->Color.Model)
+      << "; allowed: " << Word::NumberedChoice("ColorModel", ColorModel::RGB, "RGB") << " and "
+      << Word::NumberedChoice("ColorModel", ColorModel::Opponent, "Opponent") << with);
   }
 }
 
@@ -235,7 +278,8 @@ ModelTraits TotalVariationSettings::DescribeModel() const
   traits.UsesFidelity = this->FindsFidelity() || this->FidelityWeight > 0.0;
   traits.EstimatesNoise = this->FindsFidelity();
   traits.CanBeDistributed = !this->FindsFidelity() &&
-    this->Discretization == SurfaceDiffusion::Discretization::Linear && !this->Blur.IsOn();
+    this->Discretization == SurfaceDiffusion::Discretization::Linear &&
+    this->Regularizer == SurfaceDiffusion::Regularizer::TV && !this->Blur.IsOn();
   traits.UsesLinearLight = this->Color.UsesLinearLight();
   traits.BoundsError = this->Minimizes() && !this->Blur.IsOn() &&
     this->Color.Model != ColorModel::ChromaticityBrightness &&

@@ -17,6 +17,12 @@ enum class TotalVariationMode
   SteadyState ///< the minimiser of the energy
 };
 
+enum class Regularizer
+{
+  TV,
+  TGV ///< total generalised variation
+};
+
 enum class Discretization
 {
   Linear,
@@ -29,6 +35,8 @@ struct TotalVariationSettings : DataSettings
 {
   TotalVariationMode Mode = TotalVariationMode::TimeSteps;
   SurfaceDiffusion::TimeIntegrator TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
+  SurfaceDiffusion::Regularizer Regularizer = SurfaceDiffusion::Regularizer::TV;
+  double TGVLength = 2.0;
   EdgeFunctionKind EdgeFunction = EdgeFunctionKind::TotalVariation;
   int AcrossEdgeFunction = 0; ///< 0: the same; k: the edge function k - 1
   double Beta = 1e-6;
@@ -77,6 +85,7 @@ private:
   }
   std::vector<const char*> FindSettingsInRange() const;
   void CheckBlur(Problems& problems) const;
+  void CheckRegularizer(Problems& problems) const;
   void CheckColorModel(const FieldSummary* fields, Problems& problems) const;
   void RequireConvexEnergy(const Sentence& purpose, Problems& problems) const;
   const char* NameOfResidual() const;

@@ -375,7 +375,8 @@ def intrinsic_tv(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> 
 
     Solves u_t = div(g(abs(grad u)) grad u) + lambda chi (f - u), u(0) = f, by default with the g of
     total variation, 1/sqrt(abs(grad u)^2 + beta). With ``mode="SteadyState"`` it minimises the
-    energy, integral of abs(grad u) + lambda/2 chi (f - u)^2. With `blur_fwhm`, too, it restores data
+    energy, integral of abs(grad u) + lambda/2 chi (f - u)^2. With ``regularizer="TGV"``, too, ramps
+    and roofs keep their slopes, which total variation turns into stairs. With `blur_fwhm`, too, it restores data
     that were blurred on the surface: H u stands in place of u in the second term, where H is the
     blur. Then lambda is found as with `automatic_fidelity`, unless `fidelity_weight` or
     `automatic_fidelity` is given. `color_model` describes colours, three columns, by brightness and two axes of colour, or by

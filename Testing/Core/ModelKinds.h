@@ -208,6 +208,20 @@ inline std::vector<ModelKind> AllModelKinds()
       }),
     MakeKind<TV>("TotalVariationSteadyState", 1, setSteady),
     MakeKind<TV>("TotalVariationSteadyStateOnCells", 1, setSteady, Content::ScalarsOnCells),
+    MakeKind<TV>("GeneralizedVariation", 1,
+      [=](TV& s)
+      {
+        setSteady(s);
+        s.Regularizer = Regularizer::TGV;
+      },
+      Content::Colors),
+    MakeKind<TV>("GeneralizedVariationOnCells", 1,
+      [=](TV& s)
+      {
+        setSteady(s);
+        s.Regularizer = Regularizer::TGV;
+      },
+      Content::ScalarsOnCells),
     MakeKind<TV>("TotalVariationDeblurring", 1,
       [=](TV& s)
       {

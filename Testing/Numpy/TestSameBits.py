@@ -166,6 +166,8 @@ class SameBits(unittest.TestCase):
              {"TimeStep": 1.0, "FidelityWeight": 1.0, "RefineTo": 0.06}),
             ("intrinsic_tv", {"values": self.values}, {}),
             ("intrinsic_tv", {"values": colours, "mask": self.mask}, {"Mode": "SteadyState"}),
+            ("intrinsic_tv", {"values": colours, "mask": self.mask},
+             {"Mode": "SteadyState", "Regularizer": "TGV", "TGVLength": 3.0}),
             ("intrinsic_tv", {"values": self.values}, {"Mode": "SteadyState", "BlurFWHM": 0.2}),
             ("intrinsic_tv", {"values": self.values},
              {"Mode": "SteadyState", "BlurFWHM": 0.2, "AutomaticBlurFidelity": False}),

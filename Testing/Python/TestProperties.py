@@ -73,7 +73,7 @@ DEFAULTS = {
         "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4},
     "vtkIntrinsicTVFilter": {
         **DATA, "TimeIntegrator": "FirstOrder", "FidelityWeight": 3.0, "InitialFill": "Mean", "Tolerance": 1e-3, "Mode": "TimeSteps",
-        "EdgeFunction": "TotalVariation", "AcrossEdgeFunction": "Same", "Beta": 1e-6,
+        "Regularizer": "TV", "TGVLength": 2.0, "EdgeFunction": "TotalVariation", "AcrossEdgeFunction": "Same", "Beta": 1e-6,
         "EdgeThreshold": 0.1, "ChannelCoupling": "Joint", "FidelityNorm": "L2",
         "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4,
         "AutomaticBlurFidelity": True, "Discretization": "Linear", "StopTolerance": 1e-4,
@@ -149,7 +149,7 @@ WORDS = {
     "Solver": ("Automatic", "Direct", "ConjugateGradient", "Multigrid"),
     "OutputPrecision": ("Single", "Double", "Input"), "EdgeFunction": EDGE_FUNCTIONS,
     "AcrossEdgeFunction": ("Same", *EDGE_FUNCTIONS), "ChannelCoupling": ("PerChannel", "Joint"),
-    "FidelityNorm": ("L2", "L1"), "Discretization": ("Linear", "CrouzeixRaviart"),
+    "FidelityNorm": ("L2", "L1"), "Regularizer": ("TV", "TGV"), "Discretization": ("Linear", "CrouzeixRaviart"),
     "ColorModel": ("RGB", "Opponent", "ChromaticityBrightness"),
     "Scheme": ("ExplicitReaction", "TangentPlane", "MinimizingMovement"),
     "Model": ("Beltrami", "CoherenceEnhancing", "EdgeEnhancing"), "Metric": ("Induced", "Fixed"),

@@ -231,6 +231,13 @@ inline std::vector<FilterKind> AllFilters()
     MakeKind<TV>("TV", "fTV", 3),
     MakeKind<TV>("TVImplicit", "fTV", 2, [](TV* f) { f->SetTimeIntegratorToImplicit(); }),
     MakeKind<TV>("TVSteady", "fTV", 1, [](TV* f) { f->SetModeToSteadyState(); }),
+    MakeKind<TV>("TGV", "fTV", 1,
+      [](TV* f)
+      {
+        f->SetModeToSteadyState();
+        f->SetRegularizerToTGV();
+        f->SetStopTolerance(1e-2);
+      }),
     MakeKind<TV>(
       "TVCrouzeixRaviart", "fTV", 2, [](TV* f) { f->SetDiscretizationToCrouzeixRaviart(); }),
     MakeKind<TV>("TVAutomatic", "fTV", 1,

@@ -337,6 +337,8 @@ inline List OfTotalVariation()
   using F = vtkIntrinsicTVFilter;
   return {
     RANDOM_PROPERTY(F, Mode, dice.Flip(3)),
+    RANDOM_PROPERTY(F, Regularizer, dice.Flip(3)),
+    RANDOM_PROPERTY(F, TGVLength, Positive(dice)),
     RANDOM_PROPERTY(F, EdgeFunction, Choice(dice, 6)),
     RANDOM_PROPERTY(F, AcrossEdgeFunction, dice.Flip() ? 0 : Choice(dice, 7)),
     RANDOM_PROPERTY(F, Beta, Positive(dice)),

@@ -186,6 +186,13 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->SetModeToSteadyState();
       f->SetBlurFWHM(0.2);
     });
+  needed["Regularizer"] = With<TV>([](TV* f) { f->SetModeToSteadyState(); });
+  needed["TGVLength"] = With<TV>(
+    [](TV* f)
+    {
+      f->SetModeToSteadyState();
+      f->SetRegularizerToTGV();
+    });
   needed["ChromaWeight"] = With<TV>([](TV* f) { f->SetColorModelToOpponent(); });
   needed["ChromaticityExponent"] = needed["ChromaticityWeight"] =
     With<TV>([](TV* f) { f->SetColorModelToChromaticityBrightness(); });

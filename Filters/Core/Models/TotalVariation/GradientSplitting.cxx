@@ -2,50 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/TotalVariation/GradientSplitting.h"
 
+#include "Core/Models/TotalVariation/PenaltyRanges.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace SurfaceDiffusion
 {
-
-namespace
-{
-
-/// The penalty on S grad u - p, in units of g at the steepest gradient of one range on the
-/// triangle: small triangles and slivers then have no larger share in the equations than others. It
-/// shifts work between finding edges and settling values and changes no result. Measured with the
-/// factor sqrt(triangles per unknown) on meshes and medial meshes: 14 to 28 is best for noise to a
-/// gap of 1e-3, 28 to 50 to 1e-5, the more so the more vertices.
-constexpr double PenaltyFactor = 28.0;
-
-/// No penalty suits both directions of a needle. That of the steepest gradient, which is across it,
-/// is too small along it, where a multiplier then needs thousands of iterations to become 1. On
-/// triangles where the square of this gradient is more than this many times that of the geometric
-/// mean of both directions, the penalty is that of the mean. Measured on segmentations of fans of
-/// 20,000 triangles: with SquaredWidths() of vertices, a tenth of the iterations.
-constexpr double LargestRatio = 16.0;
-
-/// The largest |S grad phi|^2 of the basis functions.
-double SquaredSteepest(const GradientMap& map)
-{
-  return std::max({ map.OfCorner(0).squaredNorm(), map.OfCorner(1).squaredNorm(),
-    map.OfCorner(2).squaredNorm() });
-}
-
-/// That of the penalty. plain: without S, lest strong directions count as needles. It stands for S where
-/// this is 0, in triangles without a direction.
-double SquaredTypical(const GradientMap& map, const GradientMap& plain)
-{
-  const double area = std::abs(plain.First[0] * plain.Second[1] - plain.First[1] * plain.Second[0]);
-  const double mean = 2.0 / std::sqrt(3.0) * area; // that of equilateral triangles
-  const double ofTriangle = SquaredSteepest(plain);
-  const double share = ofTriangle > LargestRatio * mean ? mean / ofTriangle : 1.0;
-  const double steepest = SquaredSteepest(map);
-  return (steepest > 0.0 ? steepest : ofTriangle) * share;
-}
-
-} // namespace
 
 GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
   std::shared_ptr<const GradientMaps> gradients, const EdgeFunction& function,
@@ -55,21 +19,12 @@ GradientSplitting::GradientSplitting(std::shared_ptr<const TriangleMesh> mesh,
   , Function(function)
   , Coupling(coupling)
   , Parallel(parallel)
-  , Penalty(this->Mesh->NumberOfTriangles())
+  , Penalty(
+      PenaltiesOfTriangles(*this->Mesh, *this->Gradients, function, ranges, unknowns, parallel))
   , Scales(Vector::Ones(this->Mesh->NumberOfTriangles()))
   , Single(function, coupling, parallel)
   , Double(function, coupling, parallel)
 {
-  const double triangles = this->Mesh->GetReduction().Sum(this->Mesh->NumberOfTriangles());
-  const double perUnknown = std::sqrt(triangles / unknowns);
-  ForEach(parallel, this->Mesh->NumberOfTriangles(),
-    [&](Index t)
-    {
-      const TriangleMesh::Shape s = this->Mesh->Shapes()[t];
-      const double square = SquaredTypical((*this->Gradients)[t], PlainGradientMap(s));
-      const double g = function(ranges[t] * ranges[t] * square);
-      this->Penalty[t] = PenaltyFactor * perUnknown * g * s.Area();
-    });
 }
 
 CornerWeights GradientSplitting::MakeCoefficients() const

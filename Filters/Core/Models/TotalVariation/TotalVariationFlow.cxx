@@ -3,6 +3,8 @@
 #include "Core/Models/TotalVariation/TotalVariationFlow.h"
 
 #include "Core/Models/InitialState.h"
+#include "Core/Models/TotalVariation/GeneralizedVariationMinimizer.h"
+#include "Core/Models/TotalVariation/TotalVariationMinimizer.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Statistics/ValueRange.h"
 
@@ -64,16 +66,26 @@ TotalVariationFlow::TotalVariationFlow(std::shared_ptr<const Assembler> assemble
   for (Eigen::Index first = 0; first < all; first += columns)
   {
     const auto start = values.middleCols(first, columns);
-    TotalVariationMinimizer::Settings minimizer;
+    VariationMinimizer::Settings minimizer;
     minimizer.Function = settings.Function;
     minimizer.Coupling = settings.Coupling;
     minimizer.Range = ValueRange(this->Data.Start.middleCols(first, columns), mesh.GetReduction());
     minimizer.StopTolerance = settings.StopTolerance;
     minimizer.MaximumNumberOfIterations = settings.MaximumNumberOfIterations;
-    this->Systems.push_back({ first, columns,
-      std::make_unique<TotalVariationMinimizer>(this->Assembly, gradients,
-        this->QuadraticWeights(first, columns), absolute, this->Data.Fixed, start, minimizer,
-        parallel) });
+    System system{ first, columns, nullptr };
+    const Values quadratic = this->QuadraticWeights(first, columns);
+    if (settings.GeneralizedLength > 0.0)
+    {
+      system.Minimizer =
+        std::make_unique<GeneralizedVariationMinimizer>(this->Assembly, settings.GeneralizedLength,
+          quadratic, absolute, this->Data.Fixed, start, minimizer, parallel);
+    }
+    else
+    {
+      system.Minimizer = std::make_unique<TotalVariationMinimizer>(this->Assembly, gradients,
+        quadratic, absolute, this->Data.Fixed, start, minimizer, parallel);
+    }
+    this->Systems.push_back(std::move(system));
   }
   if (this->Systems.size() > 1)
   {
@@ -144,7 +156,7 @@ StepReport TotalVariationFlow::Advance(const ProgressMonitor& progress)
   double done = 0.0;
   for (const System& system : this->Systems)
   {
-    const TotalVariationMinimizer::Report result =
+    const VariationMinimizer::Report result =
       this->Minimize(system, progress.Part(done / systems, (done + 1.0) / systems));
     report.Iterations += result.Iterations;
     report.Residual = std::max(report.Residual, result.Gap);
@@ -195,7 +207,7 @@ void TotalVariationFlow::SetTarget()
     });
 }
 
-TotalVariationMinimizer::Report TotalVariationFlow::Minimize(
+VariationMinimizer::Report TotalVariationFlow::Minimize(
   const System& system, const ProgressMonitor& progress)
 {
   const bool keepMultipliers = !this->Options.SteadyState && this->KeepsMultipliers;
@@ -207,7 +219,7 @@ TotalVariationMinimizer::Report TotalVariationFlow::Minimize(
   this->ColumnTarget = this->Target.middleCols(system.First, system.Columns);
   this->ColumnGiven = this->Data.Given.middleCols(system.First, system.Columns);
   this->ColumnU = this->U.middleCols(system.First, system.Columns);
-  const TotalVariationMinimizer::Report report = system.Minimizer->Minimize(
+  const VariationMinimizer::Report report = system.Minimizer->Minimize(
     this->ColumnTarget, this->ColumnGiven, this->ColumnU, progress, keepMultipliers);
   this->U.middleCols(system.First, system.Columns) = this->ColumnU;
   return report;
@@ -216,7 +228,7 @@ TotalVariationMinimizer::Report TotalVariationFlow::Minimize(
 std::size_t TotalVariationFlow::CheckpointSize() const
 {
   std::size_t size = StateModel::CheckpointSize();
-  if (!this->Options.SteadyState)
+  if (this->SavesMultipliers())
   {
     for (const System& system : this->Systems)
     {
@@ -229,7 +241,7 @@ std::size_t TotalVariationFlow::CheckpointSize() const
 void TotalVariationFlow::Save(double* checkpoint) const
 {
   StateModel::Save(checkpoint);
-  if (this->Options.SteadyState)
+  if (!this->SavesMultipliers())
   {
     return;
   }
@@ -244,7 +256,7 @@ void TotalVariationFlow::Save(double* checkpoint) const
 void TotalVariationFlow::Restore(const double* checkpoint)
 {
   StateModel::Restore(checkpoint);
-  if (this->Options.SteadyState)
+  if (!this->SavesMultipliers())
   {
     return;
   }
@@ -301,7 +313,10 @@ const CornerWeights& TotalVariationFlow::DiffusionWeights(Eigen::Index column)
       double squared = 0.0;
       for (Eigen::Index k = first; k < first + columns; ++k)
       {
-        squared += Gradient(shape, u(0, k), u(1, k), u(2, k)).squaredNorm();
+        squared += (Gradient(shape, u(0, k), u(1, k), u(2, k)) -
+          this->Systems[static_cast<std::size_t>(first / columns)].Minimizer->FreeGradient(
+            t, k - first))
+                     .squaredNorm();
       }
       const double g = this->Options.Function(squared);
       const double g1 = this->Options.AlongDiffusivity * g;

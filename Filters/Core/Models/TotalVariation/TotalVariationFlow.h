@@ -4,7 +4,8 @@
 
 #include "Core/Models/Fidelity.h"
 #include "Core/Models/Model.h"
-#include "Core/Models/TotalVariation/TotalVariationMinimizer.h"
+#include "Core/Models/TotalVariation/VariationMinimizer.h"
+#include "Core/Operators/Assembler.h"
 #include "Core/Operators/MeanCorrection.h"
 
 #include <memory>
@@ -28,6 +29,9 @@ namespace SurfaceDiffusion
 ///   others: g psi(sqrt((g1/g) (grad u . e1)^2 + (g2/g) (grad u . e2)^2)), g the larger of the two:
 /// for gradients along e1 or e2, and always if g1 = g2, the flux is that of (4).
 ///
+/// The steady state of total variation with g1 = g2 may have total generalised variation in its
+/// place (GeneralizedVariationMinimizer).
+///
 /// A time step starts from the multipliers of the last one, so that short steps cost less than long
 /// ones.
 class TotalVariationFlow : public DataModel
@@ -41,9 +45,10 @@ public:
     EdgeFunction Function; ///< of a convex energy
     double AlongDiffusivity = 1.0;
     double AcrossDiffusivity = 1.0;
+    double GeneralizedLength = 0.0; ///< alpha of total generalised variation; 0: of total variation
     ChannelCoupling Coupling = ChannelCoupling::Joint;
     FidelityNorm Norm = FidelityNorm::L2;
-    double StopTolerance = 1e-4; ///< relative duality gap, see TotalVariationMinimizer
+    double StopTolerance = 1e-4; ///< relative duality gap, see VariationMinimizer
     int MaximumNumberOfIterations = 10000;
     bool ConservesTotal = true; ///< whether states without fidelity keep the total of the start
     std::vector<double> ChannelWeights = {}; ///< of L2, see Fidelity
@@ -80,7 +85,8 @@ public:
   DiffusionStep Diffusion() const override;
   const CornerWeights& DiffusionWeights(Eigen::Index column) override;
 
-  /// With time steps also the multipliers, from which the next step starts.
+  /// With time steps also the multipliers, from which the next step starts, and w of total
+  /// generalised variation.
   std::size_t CheckpointSize() const override;
   void Save(double* checkpoint) const override;
   void Restore(const double* checkpoint) override;
@@ -91,10 +97,14 @@ private:
   struct System
   {
     Eigen::Index First, Columns;
-    std::unique_ptr<TotalVariationMinimizer> Minimizer;
+    std::unique_ptr<VariationMinimizer> Minimizer;
   };
 
-  TotalVariationMinimizer::Report Minimize(const System& system, const ProgressMonitor& progress);
+  VariationMinimizer::Report Minimize(const System& system, const ProgressMonitor& progress);
+  bool SavesMultipliers() const
+  {
+    return !this->Options.SteadyState || this->Options.GeneralizedLength > 0.0;
+  }
   Values QuadraticWeights(Eigen::Index first, Eigen::Index columns) const;
   void MeasureWeights();
   void SetTarget();

@@ -74,9 +74,9 @@ TotalVariationMinimizer::TotalVariationMinimizer(const std::shared_ptr<const Ass
 TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler> assembler,
   std::shared_ptr<const GradientMaps> gradients, std::unique_ptr<VertexTerms> terms,
   const Vector& ranges, const Settings& settings, const ParallelFor& parallel)
-  : Assembly(std::move(assembler))
+  : VariationMinimizer(settings)
+  , Assembly(std::move(assembler))
   , OverProcesses(this->Assembly->Mesh().GetReduction())
-  , Options(settings)
   , Parallel(parallel)
   , NumberOfVertices(this->OverProcesses.SumOverVertices(
       parallel, this->Assembly->Mesh().NumberOfVertices(), [](Index) { return 1.0; }))
@@ -121,7 +121,10 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   {
     throw std::runtime_error("the minimisation has no finite solution");
   }
-  const double negligible = std::max(1e-3 * startEnergy, 1e-6 * this->NoiseEnergy());
+  const double negligible = std::max(1e-3 * startEnergy,
+    1e-6 *
+      this->NoiseEnergy(this->OverProcesses.Sum(this->Assembly->Mesh().ControlAreas().sum()),
+        this->NumberOfVertices));
   const bool grows = this->GrowthRate > 0.0;
   Report report;
   PenaltyPace pace;
@@ -369,20 +372,6 @@ double TotalVariationMinimizer::DualEnergy(const Values& u)
   }
   this->Gathered *= share;
   return std::max(dual, this->Vertices->DualEnergy(this->Gathered, u) - share * conjugate);
-}
-
-/// int psi for gradients of one Range per vertex spacing.
-double TotalVariationMinimizer::NoiseEnergy() const
-{
-  if (this->NumberOfVertices == 0.0)
-  {
-    return 0.0;
-  }
-  const double area = this->OverProcesses.Sum(this->Assembly->Mesh().ControlAreas().sum());
-  const double areaOfOne = area / this->NumberOfVertices;
-  return area *
-    WithoutBeta(this->Options.Function)
-      .Potential(this->Options.Range * this->Options.Range / areaOfOne);
 }
 
 double TotalVariationMinimizer::GradientEnergy(const Values& u) const

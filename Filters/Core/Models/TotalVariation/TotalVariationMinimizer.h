@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "Core/Foundation/ProgressMonitor.h"
-#include "Core/Models/EdgeFunctions.h"
 #include "Core/Models/TotalVariation/GradientSplitting.h"
+#include "Core/Models/TotalVariation/VariationMinimizer.h"
 #include "Core/Models/TotalVariation/VertexTerms.h"
 #include "Core/Operators/Assembler.h"
 #include "Core/Solvers/QuadraticDescent.h"
@@ -32,18 +31,9 @@ namespace SurfaceDiffusion
 /// multipliers are feasible for the dual problem at every iteration, so that the duality gap bounds
 /// E(u) - min E from above: it is the stopping criterion. At vertices with mu_i = 0 the bound is
 /// that over all u within Range of the data.
-class TotalVariationMinimizer
+class TotalVariationMinimizer : public VariationMinimizer
 {
 public:
-  struct Settings
-  {
-    EdgeFunction Function; ///< of a convex energy; its beta is not used
-    ChannelCoupling Coupling = ChannelCoupling::Joint;
-    double Range = 1.0; ///< largest max - min of the data over the channels
-    double StopTolerance = 1e-4; ///< on the duality gap / E
-    int MaximumNumberOfIterations = 10000;
-  };
-
   /// quadratic, absolute: mu and nu >= 0 per vertex; in every connected component one of them must
   /// be positive somewhere, or a vertex fixed. Without nu, mu may have a column for each one of u.
   /// typical: values of the size of the data. They
@@ -59,39 +49,15 @@ public:
     std::shared_ptr<const GradientMaps> gradients, std::unique_ptr<VertexTerms> terms,
     const Vector& ranges, const Settings& settings, const ParallelFor& parallel = SerialFor());
 
-  struct Report
-  {
-    int Iterations = 0;
-    /// Duality gap relative to E, or, if that is larger, to a thousandth of E of the start or a
-    /// millionth of the energy of noise of the whole Range: below it data are constant up to
-    /// round-off.
-    double Gap = 0.0;
-    /// Upper bound of E(u) - min E, the duality gap itself.
-    double AbsoluteGap = 0.0;
-  };
-
-  /// g, f: the data of the terms at the vertices, as VertexTerms::Start() takes them. u: the start
-  /// on entry, the minimiser on return, and never of more energy than the start. The result depends
-  /// on the arguments alone, and on the multipliers of the last call if they are kept: near the
-  /// last minimum they save most of the iterations.
   Report Minimize(const Values& g, const Values& f, Values& u,
-    const ProgressMonitor& progress = ProgressMonitor(), bool keepMultipliers = false);
+    const ProgressMonitor& progress = ProgressMonitor(), bool keepMultipliers = false) override;
 
-  /// The multipliers after Minimize() for u with `columns` columns, which restore its next call:
-  /// NumberOfMultipliers() numbers.
-  std::size_t NumberOfMultipliers(Eigen::Index columns) const;
-  void SaveMultipliers(double* numbers, Eigen::Index columns) const;
-  void RestoreMultipliers(const double* numbers, Eigen::Index columns);
-
-  /// The tolerance and the largest number of iterations of later calls of Minimize().
-  void SetLimits(double stopTolerance, int maximumNumberOfIterations)
-  {
-    this->Options.StopTolerance = stopTolerance;
-    this->Options.MaximumNumberOfIterations = maximumNumberOfIterations;
-  }
+  std::size_t NumberOfMultipliers(Eigen::Index columns) const override;
+  void SaveMultipliers(double* numbers, Eigen::Index columns) const override;
+  void RestoreMultipliers(const double* numbers, Eigen::Index columns) override;
 
   /// int psi(|S grad u|).
-  double GradientEnergy(const Values& u) const;
+  double GradientEnergy(const Values& u) const override;
 
 private:
   /// ranges: typical ones of the values on each triangle.
@@ -99,7 +65,6 @@ private:
     std::shared_ptr<const GradientMaps> gradients, Values quadratic, Vector absolute, Flags fixed,
     const Settings& settings, const Vector& ranges, const ParallelFor& parallel);
 
-  double NoiseEnergy() const;
   void Start(const Values& u, bool keepMultipliers, bool isSingle);
   void SetPenalty(double growth, const Values& u);
   void AssembleMatrix(const Values& u);
@@ -113,7 +78,6 @@ private:
 
   std::shared_ptr<const Assembler> Assembly;
   const Reduction& OverProcesses;
-  Settings Options;
   const ParallelFor& Parallel;
   double NumberOfVertices; ///< of the surface
   GradientSplitting Gradients;
