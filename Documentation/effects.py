@@ -48,6 +48,9 @@ EFFECTS = {
                 "edge_threshold": 0.2}),
         Effect("fidelity_norm", ("L2", "L1"), "Outliers pull the result with the norm L2. L1 replaces "
                "them and leaves the rest.", {"mode": "SteadyState", "fidelity_weight": 4.0}, "outliers"),
+        Effect("regularizer", ("TV", "TGV"), "Total variation makes stairs of ramps and roofs. Total "
+               "generalised variation keeps their slopes.",
+               {"mode": "SteadyState", "automatic_fidelity": True, "stop_tolerance": 1e-3}, "roof"),
         Effect("number_of_time_steps", (1, 5, 20), "More time steps remove more."),
         Effect("blur_fwhm", (0.0, 0.16, 0.3), "The data were blurred by a width of 0.3. Total variation "
                "restores their edges.", {"mode": "SteadyState", "fidelity_weight": 500.0}, "blurred"),
@@ -187,6 +190,12 @@ def sparse():
 def blurred():
     surface = pebble()
     return surface, sd.heat(surface, _clean(), fwhm=0.3)
+
+
+def roof():
+    """A ridge between two slopes, with noise."""
+    z = pebble().points[:, 2]
+    return pebble(), np.abs(z) / np.abs(z).max() + np.random.default_rng(1).normal(scale=0.1, size=2562)
 
 
 def outliers():

@@ -56,6 +56,7 @@ cd build/figures
 "${display[@]}" "$python" "$examples/mesh_denoising.py"
 "${display[@]}" "$python" "$examples/mumford_shah.py"
 "${display[@]}" "$python" "$examples/minimal_surface.py"
+"${display[@]}" "$python" "$examples/ramps.py"
 "${display[@]}" "$python" "$examples/segmentation.py"
 "${display[@]}" "$python" "$examples/tensor_diffusion.py"
 "${display[@]}" "$python" "$examples/turing_texture.py"

@@ -292,7 +292,7 @@ TotalVariationFlow::Settings TotalVariationModels::MakeFlowSettings(const Task& 
   settings.AlongDiffusivity = this->Options.AlongDiffusivity;
   settings.AcrossDiffusivity = this->Options.AcrossDiffusivity;
   settings.GeneralizedLength = this->Options.Regularizer == Regularizer::TGV
-    ? this->Units.ToCore(this->Options.TGVLength, 1.0)
+    ? this->Units.ToCore(this->Options.TGVLength, 1.0, 0.0)
     : 0.0;
   settings.Coupling = this->Options.ChannelCoupling;
   settings.Norm = this->Options.FidelityNorm;
