@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Models/ExponentialSeries.h"
+#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/MixedMass.h"
 #include "Heat.h"
 #include "NoiseWidth.h"

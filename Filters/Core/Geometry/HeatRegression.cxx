@@ -3,7 +3,9 @@
 #include "Core/Geometry/HeatRegression.h"
 
 #include "Core/Operators/CotanWeights.h"
-#include "Core/Operators/SparsePattern.h"
+#include "Core/Operators/ExponentialSeries.h"
+#include "Core/Operators/MixedMass.h"
+#include "Core/Operators/SparseProduct.h"
 #include "Core/Solvers/SolverChoice.h"
 
 #include <Eigen/Eigenvalues>
@@ -18,11 +20,9 @@ namespace SurfaceDiffusion
 namespace
 {
 
-constexpr int StepsOfHeat = 4;
-
-double StepOfWidth(double fwhm)
+double TimeOfWidth(double fwhm)
 {
-  return fwhm * fwhm / (16.0 * std::log(2.0)) / StepsOfHeat;
+  return fwhm * fwhm / (16.0 * std::log(2.0));
 }
 
 /// The columns of a matrix of moments: x, the six products of x, u, and the products of u with x.
@@ -86,19 +86,36 @@ double SmoothByHeat(const Assembler& assembler, double fwhm, Values& u, LinearSo
   const ParallelFor& parallel, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = assembler.Mesh();
-  const double dt = StepOfWidth(fwhm);
+  const CornerWeights mass = MixedMassWeights(mesh, parallel);
+  const SparseMatrix massDifference = MixedMinusLumped(assembler, mass, parallel);
+  const CornerWeights coefficients =
+    ExponentialSeries::Step * TimeOfWidth(fwhm) * CotanWeights(mesh, parallel) + mass;
   SparseMatrix matrix;
   assembler.TakePattern(matrix, parallel);
-  assembler.Fill(matrix, mesh.ControlAreas(), dt, CotanWeights(mesh, parallel), nullptr, parallel);
+  assembler.Fill(matrix, mesh.ControlAreas(), 1.0, coefficients, nullptr, parallel);
   solver.SetMatrix(matrix, progress.Part(0.0, 0.5));
   double missed = 0.0;
-  for (int step = 0; step < StepsOfHeat; ++step)
+  Values last = u; // the last two terms of the series
+  Values beforeLast = u;
+  Values y = u;
+  u *= ExponentialSeries::Coefficients[0];
+  for (int k = 1; k <= ExponentialSeries::Degree; ++k)
   {
-    const Values b = mesh.ControlAreas().asDiagonal() * u;
-    const double part = 0.5 + 0.5 * step / StepsOfHeat;
-    const SolveReport report = solver.Solve(b, u, progress.Part(part, part + 0.5 / StepsOfHeat));
+    Values b(u.rows(), u.cols());
+    Multiply(massDifference, last, b, parallel);
+    b += mesh.ControlAreas().asDiagonal() * last;
+    const double part = 0.5 + 0.5 * (k - 1) / ExponentialSeries::Degree;
+    const SolveReport report =
+      solver.Solve(b, y, progress.Part(part, part + 0.5 / ExponentialSeries::Degree));
     RequireAnswer(report, solver.GetLimits());
     missed = std::max(missed, report.Converged ? 0.0 : report.Residual);
+    for (Eigen::Index i = 0; i < u.size(); ++i)
+    {
+      double& before = beforeLast.data()[i];
+      before = ExponentialSeries::NextTerm(k, y.data()[i], last.data()[i], before);
+      u.data()[i] += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * before;
+    }
+    last.swap(beforeLast);
   }
   return missed;
 }
@@ -124,8 +141,8 @@ LinearFits FitByHeat(const Assembler& assembler, const Points& positions,
   SolverTask task;
   const double h = mesh.MeanEdgeLength();
   task.NumberOfVertices = n;
-  task.DiffusionNumber = StepOfWidth(fwhm) / (h * h);
-  task.NumberOfSolves = StepsOfHeat;
+  task.DiffusionNumber = ExponentialSeries::Step * TimeOfWidth(fwhm) / (h * h);
+  task.NumberOfSolves = ExponentialSeries::Degree;
   task.NumberOfColumns = static_cast<int>(moments.cols());
   task.Tolerance = 1e-12; // the covariances are smaller than the moments by (fwhm/size)^2
   const auto solver = MakeSolver(SolverMethod::Automatic, task, parallel);

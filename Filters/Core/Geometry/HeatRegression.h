@@ -12,8 +12,9 @@ namespace SurfaceDiffusion
 
 class LinearSolver;
 
-/// Smooth u, a row per vertex, by the heat equation (8): four backward Euler steps to the time at
-/// which the full width at half maximum of the Gaussian is `fwhm`, in LengthUnit(). Returns the
+/// Smooth u, a row per vertex, by the heat equation with the mixed mass matrix (MixedMass) and the
+/// ExponentialSeries, to the time at which the full width at half maximum of the Gaussian is `fwhm`,
+/// in LengthUnit(): as vtkFVMHeatFilter smooths where a width is given. Returns the
 /// largest relative residual of the solves that missed the tolerance, otherwise 0. Throws Aborted,
 /// NotConverged.
 double SmoothByHeat(const Assembler& assembler, double fwhm, Values& u, LinearSolver& solver,

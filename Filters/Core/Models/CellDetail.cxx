@@ -3,7 +3,7 @@
 #include "Core/Models/CellDetail.h"
 
 #include "Core/Foundation/Columns.h"
-#include "Core/Models/ExponentialSeries.h"
+#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/SparsePattern.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Resize.h"
-#include "Core/Models/ExponentialSeries.h"
+#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/Assembler.h"
 
 #include <cstddef>

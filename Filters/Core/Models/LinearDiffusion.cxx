@@ -3,7 +3,7 @@
 #include "Core/Models/LinearDiffusion.h"
 
 #include "Core/Foundation/Columns.h"
-#include "Core/Models/ExponentialSeries.h"
+#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Models/InitialState.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/DirichletEnergy.h"
