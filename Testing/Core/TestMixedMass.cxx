@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Geometry/HeatRegression.h"
 #include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/MixedMass.h"
 #include "Heat.h"
@@ -298,5 +299,21 @@ TEST(MixedMass, HeldVerticesKeepTheirValuesAndTheLimitIsTheHarmonicFunction)
     Advance(*heat, 2);
     const Values line = Sample(mesh, s, [](const Eigen::RowVector3d& p) { return p[0] / 3.0; });
     EXPECT_LT((heat->State() - line).cwiseAbs().maxCoeff(), 1e-3);
+  }
+}
+
+/// What fits of derivatives and curvatures weight with.
+TEST(MixedMass, SmoothsDerivativesAsTheHeatFilterOfTheirWidth)
+{
+  for (const Testing::Surface& s : { Icosphere(3), Disk(8), ThreeFins(6) })
+  {
+    const auto assembler = MakeAssembler(s);
+    const double width = 3.0 * assembler->Mesh().MeanEdgeLength();
+    const Values f = Noise(assembler->Mesh(), 2);
+    Values found = f;
+    const auto solver = MakeCholeskySolver();
+    EXPECT_EQ(SmoothByHeat(*assembler, width, found, *solver), 0.0);
+    const Values expected = DiffuseMixed(assembler, f, TimeOfWidth(width), Scheme::Exponential);
+    EXPECT_LT((found - expected).norm(), 1e-12 * f.norm());
   }
 }

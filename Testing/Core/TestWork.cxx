@@ -210,6 +210,31 @@ TEST(Work, OfTotalVariationIsFewIterationsForAllKindsOfData)
   }
 }
 
+/// To gaps of 1e-2, those of searches for a weight, and of 1e-3; the first guesses and the pace of the
+/// penalties are measured.
+TEST(Work, OfTotalGeneralizedVariationIsSomeHundredIterations)
+{
+  for (const SphereData& data : AllSphereData())
+  {
+    const Testing::Surface s = SphereOf(data, 4);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const PointData given = PointData::FromValues(NoisyValues(data, mesh, s));
+    const double h = MeanEdge(mesh);
+    for (const double weight : { 10.0, 3.0 })
+    {
+      for (const auto& [tolerance, most] : { std::pair(1e-2, 120), std::pair(1e-3, 300) })
+      {
+        TotalVariationFlow::Settings settings = ExactSettings(mesh, 0.0, weight / h, tolerance);
+        settings.GeneralizedLength = 2.0 * h / mesh.LengthUnit();
+        const StepReport report = MakeExact(assembler, given, settings)->Advance(ProgressMonitor());
+        EXPECT_LE(report.Residual, tolerance);
+        EXPECT_LE(report.Iterations, most) << data.Name << ", " << weight << ", " << tolerance;
+      }
+    }
+  }
+}
+
 /// For surfaces of any size: 45 steps towards a fit at most, each with one report and those of one step
 /// of conjugate gradients; and eight minimisations of the variation of normals of 13 steps, each
 /// with a fit of six.

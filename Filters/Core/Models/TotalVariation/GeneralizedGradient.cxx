@@ -162,8 +162,7 @@ void GeneralizedGradient::MakeRow(Index row, const Vector& weights, Entries& ent
         [&](Index column, const Eigen::Vector2d& coefficients)
         { entries.emplace_back(column, weights[g] * own.dot(coefficients)); });
     });
-  std::stable_sort(
-    entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(entries.begin(), entries.end());
   auto last = entries.begin();
   for (auto entry = entries.begin(); entry != entries.end(); ++entry)
   {

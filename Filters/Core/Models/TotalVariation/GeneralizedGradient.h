@@ -40,38 +40,19 @@ public:
   };
   const Edge& GetEdge(Index e) const { return this->Edges[static_cast<std::size_t>(e)]; }
 
-  /// Group g of B x: the K columns of both rows, or any number of columns for K = 0.
-  template <int K>
-  void Apply(Index g, const Values& x, double* result) const
+  /// Group g of B x, for column k.
+  Eigen::Vector2d Apply(Index g, const Values& x, Eigen::Index k) const
   {
-    const ColumnCount<K> columns(x.cols());
-    if (g >= this->NumberOfTriangles())
+    if (g < this->NumberOfTriangles())
     {
-      const Edge& edge = this->GetEdge(g - this->NumberOfTriangles());
-      const double* const left = this->VectorOf(edge.Left, x);
-      const double* const right = this->VectorOf(edge.Right, x);
-      for (int k = 0; k < columns; ++k)
-      {
-        const Eigen::Vector2d turned = edge.P * Eigen::Vector2d(right[k], right[columns + k]);
-        result[k] = left[k] - turned[0];
-        result[columns + k] = left[columns + k] - turned[1];
-      }
-      return;
+      const Triangles& corners = this->Mesh->TriangleVertices();
+      const GradientMap& map = this->Maps[static_cast<std::size_t>(g)];
+      const double x0 = x(corners(g, 0), k);
+      return (x(corners(g, 1), k) - x0) * map.First + (x(corners(g, 2), k) - x0) * map.Second -
+        this->VectorOf(g, x, k);
     }
-    const double* corners[3];
-    for (int a = 0; a < 3; ++a)
-    {
-      corners[a] = &x(this->Mesh->TriangleVertices()(g, a), 0);
-    }
-    const double* const w = this->VectorOf(g, x);
-    const GradientMap& map = this->Maps[static_cast<std::size_t>(g)];
-    for (int k = 0; k < columns; ++k)
-    {
-      const double first = corners[1][k] - corners[0][k];
-      const double second = corners[2][k] - corners[0][k];
-      result[k] = first * map.First[0] + second * map.Second[0] - w[k];
-      result[columns + k] = first * map.First[1] + second * map.Second[1] - w[columns + k];
-    }
+    const Edge& edge = this->GetEdge(g - this->NumberOfTriangles());
+    return this->VectorOf(edge.Left, x, k) - edge.P * this->VectorOf(edge.Right, x, k);
   }
 
   /// Add to the K columns of `row` the row of vertex i of B^T y. y(t, k): the vector of triangle t.
@@ -109,10 +90,11 @@ public:
     return sum;
   }
 
-  /// The row of x with the first component of w at triangle t; the second is in the next one.
-  const double* VectorOf(Index t, const Values& x) const
+  /// w of triangle t in column k of x.
+  Eigen::Vector2d VectorOf(Index t, const Values& x, Eigen::Index k) const
   {
-    return &x(this->NumberOfVertices() + 2 * t, 0);
+    const Index row = this->NumberOfVertices() + 2 * t;
+    return { x(row, k), x(row + 1, k) };
   }
 
   /// B^T diag(weights) B, with one weight for each group.

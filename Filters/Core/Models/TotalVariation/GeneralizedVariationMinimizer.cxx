@@ -3,10 +3,11 @@
 #include "Core/Models/TotalVariation/GeneralizedVariationMinimizer.h"
 
 #include "Core/Foundation/Resize.h"
+#include "Core/Models/TotalVariation/GroupRows.h"
 #include "Core/Models/TotalVariation/PenaltyPace.h"
 #include "Core/Models/TotalVariation/PenaltyRanges.h"
 #include "Core/Models/TotalVariation/VertexSplitting.h"
-#include "Core/Operators/SparsePattern.h"
+#include "Core/Operators/SparseProduct.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,48 +40,6 @@ constexpr double PenaltyOfEdges = 1.0;
 constexpr double GrowthFactor = 0.25;
 constexpr double SquaredEdgeOverHeight = 4.0 / 3.0; ///< of equilateral triangles
 
-/// While E falls by more than this times the tolerance between two checks, the gap is larger than
-/// the tolerance, and is not worth the measurement.
-constexpr double FallOfEnergy = 2.0;
-
-/// Steps of RepairMultipliers(): after 10 to 20 of them the bound is that of converged ones.
-constexpr int RepairSteps = 15;
-
-template <int K>
-const double* GroupOf(const Values& values, Index g)
-{
-  const ColumnCount<K> columns(values.cols());
-  return values.data() + static_cast<std::ptrdiff_t>(2 * g) * columns;
-}
-template <int K>
-double* GroupOf(Values& values, Index g)
-{
-  const ColumnCount<K> columns(values.cols());
-  return values.data() + static_cast<std::ptrdiff_t>(2 * g) * columns;
-}
-
-/// Column k of a group of two rows.
-template <int K>
-Eigen::Vector2d VectorAt(const Values& values, Index g, int k)
-{
-  const ColumnCount<K> columns(values.cols());
-  const double* const group = GroupOf<K>(values, g);
-  return { group[k], group[columns + k] };
-}
-
-/// The square of a group over all columns.
-template <int K>
-double SquareOf(const double* group, Eigen::Index count)
-{
-  const ColumnCount<K> columns(count);
-  double sum = 0.0;
-  for (int k = 0; k < 2 * columns; ++k)
-  {
-    sum += group[k] * group[k];
-  }
-  return sum;
-}
-
 } // namespace
 
 GeneralizedVariationMinimizer::GeneralizedVariationMinimizer(
@@ -110,6 +69,8 @@ GeneralizedVariationMinimizer::GeneralizedVariationMinimizer(
                                       : length * this->Operator.GetEdge(g - triangles).Length;
     });
   this->SetPenalties(ranges);
+  this->Matrix = this->Operator.MakeMatrix(this->Penalty, parallel);
+  this->Entries.assign(this->Matrix.valuePtr(), this->Matrix.valuePtr() + this->Matrix.nonZeros());
   this->VertexDiagonal = this->Vertices->MakeDiagonal();
   const Values shifts = this->Vertices->MakeColumnShifts();
   if (shifts.size() > 0)
@@ -153,7 +114,7 @@ VariationMinimizer::Report GeneralizedVariationMinimizer::Minimize(const Values&
 {
   bool isSingle = this->Options.StopTolerance >=
     (this->Vertices->IsSplit() ? SmallestSingleGapOfSplit : SmallestSingleGap);
-  const Values initial = u;
+  this->Initial = u;
   this->Vertices->Start(g, f, u, false);
   this->Start(u, isSingle);
   const double startEnergy = this->GroupEnergy(this->X) + this->Vertices->Energy(u);
@@ -216,7 +177,7 @@ VariationMinimizer::Report GeneralizedVariationMinimizer::Minimize(const Values&
   }
   if (!(this->GroupEnergy(this->X) + this->Vertices->Energy(u) <= startEnergy))
   {
-    u = initial;
+    u = this->Initial;
     this->X.topRows(u.rows()) = u;
     this->X.bottomRows(this->X.rows() - u.rows()).setZero();
   }
@@ -245,15 +206,14 @@ void GeneralizedVariationMinimizer::Start(const Values& u, bool isSingle)
   this->X.topRows(u.rows()) = u;
   this->Multipliers.setZero();
   ForEach(this->Parallel, groups,
-    [&](Index g) { this->Operator.Apply<0>(g, this->X, GroupOf<0>(this->Split, g)); });
-  this->Matrix = this->Operator.MakeMatrix(this->Penalty, this->Parallel);
-  if (this->Vertices->GetFixed().any())
-  {
-    this->Constrain(u);
-  }
-  this->Diagonal.resize(rows);
-  ForEach(
-    this->Parallel, rows, [&](Index i) { this->Diagonal[i] = DiagonalEntry(this->Matrix, i); });
+    [&](Index g)
+    {
+      for (int k = 0; k < static_cast<int>(u.cols()); ++k)
+      {
+        SetVector<0>(this->Split, g, k, this->Operator.Apply(g, this->X, k));
+      }
+    });
+  this->SetLoad(u);
   this->Growth = 1.0;
   this->BestDual = 0.0; // no energy is negative
   this->LastEnergy = std::numeric_limits<double>::infinity();
@@ -261,26 +221,30 @@ void GeneralizedVariationMinimizer::Start(const Values& u, bool isSingle)
   this->SetMatrix();
 }
 
-/// Dirichlet conditions: only the diagonal stays in rows of fixed vertices.
-void GeneralizedVariationMinimizer::Constrain(const Values& u)
+/// The rows of fixed vertices are Dirichlet conditions.
+bool GeneralizedVariationMinimizer::IsFixed(Index row) const
 {
-  const Index n = this->Operator.NumberOfVertices();
-  const auto isFixed = [&](Index row) { return row < n && this->Vertices->GetFixed()[row]; };
+  return row < this->Operator.NumberOfVertices() && this->Vertices->GetFixed()[row];
+}
+
+/// What fixed vertices give to the other rows, at the first penalties.
+void GeneralizedVariationMinimizer::SetLoad(const Values& u)
+{
+  if (!this->Vertices->GetFixed().any())
+  {
+    return;
+  }
+  const Index* const outer = this->Matrix.outerIndexPtr();
   ForEach(this->Parallel, this->Operator.NumberOfRows(),
     [&](Index row)
     {
-      for (SparseMatrix::InnerIterator a(this->Matrix, row); a; ++a)
+      for (Index slot = outer[row]; slot < outer[row + 1] && !this->IsFixed(row); ++slot)
       {
-        const auto column = static_cast<Index>(a.index());
-        if (column == row || !(isFixed(row) || isFixed(column)))
+        const Index column = this->Matrix.innerIndexPtr()[slot];
+        if (this->IsFixed(column))
         {
-          continue;
+          this->Load.row(row) -= this->Entries[static_cast<std::size_t>(slot)] * u.row(column);
         }
-        if (!isFixed(row))
-        {
-          this->Load.row(row) -= a.value() * u.row(column);
-        }
-        a.valueRef() = 0.0;
       }
     });
 }
@@ -290,23 +254,27 @@ void GeneralizedVariationMinimizer::SetGrowth(double growth)
 {
   if (growth != this->Growth)
   {
-    const double ratio = growth / this->Growth;
-    this->Multipliers *= 1.0 / ratio;
+    this->Multipliers *= this->Growth / growth;
     this->Growth = growth;
-    ForEach(this->Parallel, static_cast<Index>(this->Matrix.nonZeros()),
-      [&](Index slot) { this->Matrix.valuePtr()[slot] *= ratio; });
     this->SetMatrix();
   }
 }
 
 void GeneralizedVariationMinimizer::SetMatrix()
 {
+  const Index* const outer = this->Matrix.outerIndexPtr();
   ForEach(this->Parallel, this->Operator.NumberOfRows(),
     [&](Index row)
     {
       const double ofVertex =
         row < this->Operator.NumberOfVertices() ? this->VertexDiagonal[row] : 0.0;
-      this->Matrix.coeffRef(row, row) = this->Growth * this->Diagonal[row] + ofVertex;
+      for (Index slot = outer[row]; slot < outer[row + 1]; ++slot)
+      {
+        const Index column = this->Matrix.innerIndexPtr()[slot];
+        const double entry = this->Growth * this->Entries[static_cast<std::size_t>(slot)];
+        const bool isOut = column != row && (this->IsFixed(row) || this->IsFixed(column));
+        this->Matrix.valuePtr()[slot] = isOut ? 0.0 : column == row ? entry + ofVertex : entry;
+      }
     });
   this->Descent.SetMatrix(this->Matrix, this->ColumnShifts);
 }
@@ -342,20 +310,11 @@ void GeneralizedVariationMinimizer::UpdateGroups()
       double* const multipliers = GroupOf<K>(this->Multipliers, g);
       double* const split = GroupOf<K>(this->Split, g);
       const double threshold = this->Bounds[g] / (this->Growth * this->Penalty[g]);
-      ColumnRegisters<double, K, 2> registers;
-      double* const now = registers.Or(split);
-      if (K == 0)
+      for (int k = 0; k < columns; ++k)
       {
-        for (int k = 0; k < 2 * columns; ++k)
-        {
-          multipliers[k] += (1.0 - OverRelaxation) * split[k];
-        }
-      }
-      this->Operator.Apply<K>(g, this->X, now);
-      for (int k = 0; k < 2 * columns; ++k)
-      {
-        const double last = K == 0 ? 0.0 : (1.0 - OverRelaxation) * split[k];
-        multipliers[k] += last + OverRelaxation * now[k];
+        const Eigen::Vector2d now = OverRelaxation * this->Operator.Apply(g, this->X, k);
+        multipliers[k] += now[0] + (1.0 - OverRelaxation) * split[k];
+        multipliers[columns + k] += now[1] + (1.0 - OverRelaxation) * split[columns + k];
       }
       const double norm = std::sqrt(SquareOf<K>(multipliers, columns));
       const double share = norm > threshold ? threshold / norm : 1.0;
@@ -413,19 +372,15 @@ void GeneralizedVariationMinimizer::UpdateResidual()
 
 double GeneralizedVariationMinimizer::GroupEnergy(const Values& x) const
 {
-  return ForColumns(x.cols(),
-    [&](auto k)
+  return Sum(this->Parallel, this->Operator.NumberOfGroups(),
+    [&](Index g)
     {
-      constexpr int K = decltype(k)::value;
-      return Sum(this->Parallel, this->Operator.NumberOfGroups(),
-        [&](Index g)
-        {
-          ColumnRegisters<double, K, 2> registers;
-          std::vector<double> many(K == 0 ? 2 * static_cast<std::size_t>(x.cols()) : 0);
-          double* const group = registers.Or(many.data());
-          this->Operator.Apply<K>(g, x, group);
-          return this->Bounds[g] * std::sqrt(SquareOf<K>(group, x.cols()));
-        });
+      double squared = 0.0;
+      for (Eigen::Index k = 0; k < x.cols(); ++k)
+      {
+        squared += this->Operator.Apply(g, x, k).squaredNorm();
+      }
+      return this->Bounds[g] * std::sqrt(squared);
     });
 }
 
@@ -455,149 +410,6 @@ void GeneralizedVariationMinimizer::RestoreMultipliers(const double* numbers, Ei
   this->X.resize(this->Operator.NumberOfRows(), columns);
   std::copy_n(
     numbers, this->NumberOfMultipliers(columns), &this->X(this->Operator.NumberOfVertices(), 0));
-}
-
-/// The excess of y = div q beyond the length 1 per triangle, over |T|; returns the largest one of
-/// all.
-template <int K>
-double GeneralizedVariationMinimizer::MeasureExcess(const Values& q, bool keepsWhole)
-{
-  const ColumnCount<K> columns(q.cols());
-  return Max(this->Parallel, this->Operator.NumberOfTriangles(),
-    [&](Index t)
-    {
-      double* const excess = GroupOf<K>(this->Excess, t);
-      for (int k = 0; k < columns; ++k)
-      {
-        const Eigen::Vector2d y =
-          this->Operator.GatherAtTriangle(t, [&](Index e) { return VectorAt<K>(q, e, k); });
-        excess[k] = y[0];
-        excess[columns + k] = y[1];
-      }
-      const double length = std::sqrt(SquareOf<K>(excess, columns)) / this->Bounds[t];
-      const double share = length > 1.0 ? (1.0 - 1.0 / length) / this->Bounds[t] : 0.0;
-      for (int k = 0; k < 2 * columns; ++k)
-      {
-        excess[k] *= keepsWhole ? 1.0 : share;
-      }
-      return std::max(0.0, length - 1.0);
-    });
-}
-
-/// Q from the multipliers of edges, such that those of triangles, y = div Q, have at most the
-/// length 1 as far as RepairSteps achieve it: accelerated projected gradient steps on
-/// sum_T |T|/2 (|y_T| - 1)_+^2.
-template <int K>
-void GeneralizedVariationMinimizer::RepairMultipliers()
-{
-  const Index triangles = this->Operator.NumberOfTriangles();
-  const Index edges = this->Operator.NumberOfEdges();
-  const ColumnCount<K> columns(this->X.cols());
-  ForEach(this->Parallel, edges,
-    [&](Index e)
-    {
-      const double penalty = this->Growth * this->Penalty[triangles + e];
-      const double* const multipliers = GroupOf<K>(this->Multipliers, triangles + e);
-      double* const q = GroupOf<K>(this->Q, e);
-      for (int k = 0; k < 2 * columns; ++k)
-      {
-        q[k] = penalty * multipliers[k];
-      }
-    });
-  this->Extrapolated = this->Q;
-  double t = 1.0;
-  for (int step = 0; step < RepairSteps; ++step)
-  {
-    if (this->MeasureExcess<K>(this->Extrapolated, false) <= 0.1 * this->Options.StopTolerance)
-    {
-      break;
-    }
-    const double next = 0.5 + std::sqrt(0.25 + t * t);
-    this->StepTowardsFeasible<K>((t - 1.0) / next);
-    t = next;
-  }
-}
-
-/// From Extrapolated to the next Q, and beyond it by the momentum.
-template <int K>
-void GeneralizedVariationMinimizer::StepTowardsFeasible(double momentum)
-{
-  const Index triangles = this->Operator.NumberOfTriangles();
-  const ColumnCount<K> columns(this->X.cols());
-  ForEach(this->Parallel, this->Operator.NumberOfEdges(),
-    [&](Index e)
-    {
-      const GeneralizedGradient::Edge& edge = this->Operator.GetEdge(e);
-      const double stride =
-        1.0 / (3.0 * (1.0 / this->Bounds[edge.Left] + 1.0 / this->Bounds[edge.Right]));
-      double* const point = GroupOf<K>(this->Extrapolated, e);
-      for (int k = 0; k < columns; ++k)
-      {
-        const Eigen::Vector2d change = VectorAt<K>(this->Excess, edge.Left, k) -
-          edge.P * VectorAt<K>(this->Excess, edge.Right, k);
-        point[k] -= stride * change[0];
-        point[columns + k] -= stride * change[1];
-      }
-      const double bound = this->Bounds[triangles + e];
-      const double length = std::sqrt(SquareOf<K>(point, columns));
-      const double share = length > bound ? bound / length : 1.0;
-      double* const q = GroupOf<K>(this->Q, e);
-      for (int k = 0; k < 2 * columns; ++k)
-      {
-        const double now = share * point[k];
-        point[k] = now + momentum * (now - q[k]);
-        q[k] = now;
-      }
-    });
-}
-
-/// The dual function at feasible multipliers near the present ones: the minimum over u of
-/// int y . grad u and the terms at the vertices. If larger, that at s y, s <= 1, see
-/// TotalVariationMinimizer.
-template <int K>
-double GeneralizedVariationMinimizer::DualEnergy(const Values& u)
-{
-  this->RepairMultipliers<K>();
-  const double feasible = 1.0 / (1.0 + this->MeasureExcess<K>(this->Q, true));
-  const ColumnCount<K> columns(u.cols());
-  ForEach(this->Parallel, this->Operator.NumberOfVertices(),
-    [&](Index i)
-    {
-      double* const row = &this->Gathered(i, 0);
-      std::fill_n(row, static_cast<int>(columns), 0.0);
-      this->Operator.GatherAtVertex<K>(
-        i, [&](Index t, int k) { return VectorAt<K>(this->Excess, t, k); }, row, columns);
-      for (int k = 0; k < columns; ++k)
-      {
-        row[k] *= feasible;
-      }
-    });
-  const double dual = this->Vertices->DualEnergy(this->Gathered, u);
-  const double share = this->Vertices->FeasibleShare(this->Gathered);
-  if (share == 1.0)
-  {
-    return dual;
-  }
-  this->Gathered *= share;
-  return std::max(dual, this->Vertices->DualEnergy(this->Gathered, u));
-}
-
-/// The duality gap of the present state, also relative to E or to `negligible`; not finite if that
-/// is not. The bound of the last check stays as long as E falls by more than the tolerance.
-void GeneralizedVariationMinimizer::MeasureGap(const Values& u, double negligible, Report& report)
-{
-  const double energy = this->GroupEnergy(this->X) + this->Vertices->Energy(u);
-  const double scale = std::max(energy, negligible);
-  if (!(this->LastEnergy - energy > FallOfEnergy * this->Options.StopTolerance * scale))
-  {
-    const double dual =
-      ForColumns(u.cols(), [&](auto k) { return this->DualEnergy<decltype(k)::value>(u); });
-    this->BestDual = std::max(this->BestDual, dual);
-  }
-  this->LastEnergy = energy;
-  const double gap = energy - this->BestDual;
-  report.AbsoluteGap = gap < 0.0 ? 0.0 : gap; // keeps what is not a number
-  report.Gap = scale > 0.0 || std::isnan(scale) ? report.AbsoluteGap / scale : 0.0;
 }
 
 } // namespace SurfaceDiffusion

@@ -9,6 +9,7 @@
 #include "Core/Solvers/QuadraticDescent.h"
 
 #include <memory>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -52,12 +53,7 @@ public:
   double GradientEnergy(const Values& u) const override;
   Eigen::Vector2d FreeGradient(Index t, Eigen::Index k) const override
   {
-    if (this->X.size() == 0)
-    {
-      return Eigen::Vector2d::Zero();
-    }
-    const double* const w = this->Operator.VectorOf(t, this->X);
-    return { w[k], w[this->X.cols() + k] };
+    return this->X.size() > 0 ? this->Operator.VectorOf(t, this->X, k) : Eigen::Vector2d::Zero();
   }
 
 private:
@@ -66,7 +62,8 @@ private:
   void SetGrowth(double growth);
   void SetMatrix();
   void SetResidual();
-  void Constrain(const Values& u);
+  bool IsFixed(Index row) const;
+  void SetLoad(const Values& u);
   template <int K>
   void UpdateGroups();
   template <int K>
@@ -93,12 +90,13 @@ private:
   double Growth = 1.0; ///< of all penalties
   double GrowthRate = 0.0; ///< per iteration
   Vector VertexDiagonal; ///< what the terms at the vertices add to the diagonal
-  Vector Diagonal; ///< of the matrix without this, at the first penalties
   SparseMatrix Matrix; ///< of the quadratic problem for (u, w)
+  std::vector<double> Entries; ///< of the matrix without these terms, at the first penalties
   Values ColumnShifts;
   Values Load; ///< of fixed vertices, at the first penalties
   QuadraticDescent Descent;
   Values X, RightHandSide;
+  Values Initial; ///< u on entry
   Values Split, Multipliers; ///< two rows per group; multipliers are scaled by the penalty
   Values Q, Extrapolated; ///< feasible multipliers of edges, and the point to step from
   Values Excess; ///< two rows per triangle
