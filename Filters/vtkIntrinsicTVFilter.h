@@ -149,8 +149,8 @@ public:
   ///@}
 
   /**
-   * alpha of Regularizer TGV, a length, in h: a bend of a line costs as much as a step of alpha times the
-   * change of its slope. A longer one suppresses bends, and makes the result more like that of TV; a
+   * alpha of Regularizer TGV, a length in the unit of lengths that Units selects (natural units: h).
+   * A bend of a line costs as much as a step of alpha times the change of its slope. A longer one suppresses bends, and makes the result more like that of TV; a
    * shorter one leaves more noise. Above 0. Default: 2, the best of 1, 2, 4 and 8 for noise of 10 %
    * on ramps with a cliff, and within 3 % of it on roofs.
    */

@@ -62,9 +62,10 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "Linear and BlurFWHM 0." },
     this->Regularizer, { "TV", "TGV" });
   visitor.Number({ "TGVLength", "h",
-                   "The length alpha of Regularizer TGV, above 0, in h. A bend of the data costs "
-                   "as much as a step that is alpha times the change of the slope. The longer it "
-                   "is, the more the result is like that of TV." },
+                   "The length alpha of Regularizer TGV, above 0, in the unit of lengths that Units "
+                   "selects (natural units: h). A bend of the data costs as much as a step of alpha "
+                   "times the change of the slope. The longer it is, the more the result is like "
+                   "that of TV." },
     this->TGVLength, SettingRange::Positive());
   visitor.Choice({ "EdgeFunction", "",
                    "The diffusivity g(s) of s = |grad u|, where K is the edge threshold. "

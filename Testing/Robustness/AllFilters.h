@@ -231,7 +231,7 @@ inline std::vector<FilterKind> AllFilters()
     MakeKind<TV>("TV", "fTV", 3),
     MakeKind<TV>("TVImplicit", "fTV", 2, [](TV* f) { f->SetTimeIntegratorToImplicit(); }),
     MakeKind<TV>("TVSteady", "fTV", 1, [](TV* f) { f->SetModeToSteadyState(); }),
-    MakeKind<TV>("TGV", "fTV", 1,
+    MakeKind<TV>("TVGeneralized", "fTV", 1,
       [](TV* f)
       {
         f->SetModeToSteadyState();

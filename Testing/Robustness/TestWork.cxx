@@ -36,6 +36,7 @@ const std::map<std::string, int> LargestNumbers = {
   // nothing is strictly convex.
   { "TVImplicit", 90 },
   { "TVSteady", 100 },
+  { "TVGeneralized", 150 },
   { "TVWeighted", 120 },
   { "TVOfWeightedCells", 120 },
   { "TVAutomatic", 30 },
