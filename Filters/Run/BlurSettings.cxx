@@ -30,8 +30,8 @@ void BlurSettings::Visit(SettingVisitor& visitor)
                    "the data have gone through on the surface and that Mode SteadyState removes. "
                    "0: none. It is meant for widths of 2 to 8 mean edge lengths. The blur of a "
                    "camera's image is not a blur on the surface.",
-                   "(Mode=SteadyState and FidelityNorm=L2 and Discretization=Linear and "
-                   "ColorModel=RGB) or BlurFWHM!=0" },
+                   "(Mode=SteadyState and Regularizer=TV and FidelityNorm=L2 and "
+                   "Discretization=Linear and ColorModel=RGB) or BlurFWHM!=0" },
     this->FWHM, SettingRange::NonNegative());
   visitor.Integer({ "BlurSteps", "",
                     "Number of implicit steps that model the blur of BlurFWHM. With 4 its point "

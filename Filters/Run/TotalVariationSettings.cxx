@@ -53,19 +53,24 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "EdgeFunction=Constant) and AcrossEdgeFunction=Same) or Mode=SteadyState)) or "
                    "(BlurFWHM!=0 and Mode=TimeSteps)" },
     this->Mode, { "TimeSteps", "SteadyState" });
-  visitor.Choice({ "Regularizer", "",
-                   "What SteadyState minimises beside the fidelity. TV: total variation, of which "
-                   "plateaus with sharp edges have least; ramps become stairs. TGV: total "
-                   "generalised variation of second order, of which ramps and roofs have least, "
-                   "too; it takes longer. TGV requires Mode SteadyState, EdgeFunction "
-                   "TotalVariation, equal AlongDiffusivity and AcrossDiffusivity, Discretization "
-                   "Linear and BlurFWHM 0." },
+  visitor.Choice(
+    { "Regularizer", "",
+      "What SteadyState minimises beside the fidelity. TV: total variation, of which "
+      "plateaus with sharp edges have least; ramps become stairs. TGV: total "
+      "generalised variation of second order, of which ramps and roofs have least, "
+      "too; it takes longer. TGV requires Mode SteadyState, EdgeFunction "
+      "TotalVariation, equal AlongDiffusivity and AcrossDiffusivity, Discretization "
+      "Linear and BlurFWHM 0.",
+      "(Mode=SteadyState and EdgeFunction=TotalVariation and Discretization=Linear and "
+      "BlurFWHM=0 and ColorModel!=ChromaticityBrightness) or Regularizer=TGV" },
     this->Regularizer, { "TV", "TGV" });
-  visitor.Number({ "TGVLength", "h",
-                   "The length alpha of Regularizer TGV, above 0, in the unit of lengths that Units "
-                   "selects (natural units: h). A bend of the data costs as much as a step of alpha "
-                   "times the change of the slope. The longer it is, the more the result is like "
-                   "that of TV." },
+  visitor.Number(
+    { "TGVLength", "h",
+      "The length alpha of Regularizer TGV, above 0, in the unit of lengths that Units "
+      "selects (natural units: h). A bend of the data costs as much as a step of alpha "
+      "times the change of the slope. The longer it is, the more the result is like "
+      "that of TV.",
+      "Regularizer=TGV" },
     this->TGVLength, SettingRange::Positive());
   visitor.Choice({ "EdgeFunction", "",
                    "The diffusivity g(s) of s = |grad u|, where K is the edge threshold. "
@@ -116,7 +121,7 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "Linear: unknowns at the points, as in the paper. CrouzeixRaviart: unknowns "
                    "at the edges of the mesh, which are three times as many. It reproduces the "
                    "heights of plateaus to a fraction of a percent.",
-                   "BlurFWHM=0 or Discretization=CrouzeixRaviart" },
+                   "(BlurFWHM=0 and Regularizer=TV) or Discretization=CrouzeixRaviart" },
     this->Discretization, { "Linear", "CrouzeixRaviart" });
   visitor.Number({ "StopTolerance", "",
                    "The relative duality gap at which Mode SteadyState and each step of "
