@@ -26,7 +26,7 @@ class Effect:
 
 EFFECTS = {
     "heat": (
-        Effect("fwhm", (0.1, 0.3, 0.8), "A larger width removes noise and blurs the edges of the data."),
+        Effect("fwhm", (0.12, 0.3, 0.8), "A larger width removes noise and blurs the edges of the data."),
         Effect("fidelity_weight", (0.5, 0.1, 0.02), "A smaller weight λ keeps less of the data.",
                {"mode": "SteadyState"}),
         Effect("across_diffusivity", (1.0, 0.1, 0.001),
@@ -78,12 +78,12 @@ EFFECTS = {
                "block"),
     ),
     "mumford_shah": (
-        Effect("edge_threshold", (0.35, 0.5, 0.7), "Jumps below the threshold are smoothed, jumps above "
+        Effect("edge_threshold", (0.45, 0.55, 0.7), "Jumps below the threshold are smoothed, jumps above "
                "it become edges."),
         Effect("smoothing_length", (2.0, 4.0, 8.0), "Between edges the data are smoothed over this "
-               "length.", {"edge_threshold": 0.4}),
+               "length.", {"edge_threshold": 0.5}),
         Effect("edge_width", (1.0, 2.0, 3.0), "The array of edges, 1 − v. Wide edges are found more surely, "
-               "and narrow ones are placed more exactly.", {"edge_threshold": 0.4, "shown": "edges"}),
+               "and narrow ones are placed more exactly.", {"edge_threshold": 0.5, "shown": "edges"}),
     ),
     "segment": (
         Effect("number_of_regions", (2, 3), "The regions have short boundaries in spite of noise."),
