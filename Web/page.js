@@ -11,20 +11,10 @@ const STARTS = {
   relief: ({ size }) => ({ height: rounded(0.01 * size) }),
   harmonic_map: () => ({ move_vertices: true }),
 };
-/**
- * The engine's memory in bytes, and what a run takes of it for each triangle: measured with 100,000, times 1.3,
- * since factors of matrices grow faster than surfaces.
- */
-const ROOM = 2e9;
-const MEMORY = { curvature: 540, denoise_mesh: 540, derivatives: 640, direction_field: 1340, distance: 540,
-  harmonic_map: 930, heat: 640, interpolate: 2300, intrinsic_tv: 540, mumford_shah: 770, random_field: 1340,
-  relief: 770, segment: 770, tensor_diffusion: 540, turing_texture: 770 };
 const LARGEST_FILE = 5e8; // bytes; readers take four times as much
 /** Names of files that have values and no surface. */
 const VALUES = /\.((csv|txt|tsv|mgh|mgz|label|annot|(func|shape|label)\.gii)(\.gz)?)$|(^|\/)[lr]h\.(thickness|curv|sulc|area|volume)[^/]*$/i;
 
-const rounded = (x) => Number(x.toPrecision(3));
-const plural = (count, word) => `${count.toLocaleString("en")} ${word}${count === 1 ? "" : "s"}`;
 const lastPart = (name) => name.split("/").pop() || name; // of arrays that are named after a file
 const arrayNamed = (arrays, name) => arrays.find((array) => array.name === name);
 
@@ -202,7 +192,7 @@ class Page {
     this.controls.association = array ? array.association : "point";
     this.controls.hasData = Boolean($("array").value);
     this.controls.show(model, this.mesh ? this.mesh.arrays : [], start);
-    $("memory").textContent = this.mesh ? this.refusal(model.name, {}) : "";
+    $("memory").textContent = this.mesh ? refusal(this.mesh, model.name, {}) : "";
   }
 
   // ---- runs -------------------------------------------------------------------------------------
@@ -260,20 +250,12 @@ class Page {
     await this.valuesOf(arrayNamed(mesh.arrays, name));
   }
 
-  /** The sentence of runs that the memory has no room for; empty for others. */
-  refusal(model, options) {
-    const count = trianglesOf(this.mesh, options), bytes = MEMORY[model] * count;
-    if (!(bytes > ROOM)) { return ""; }
-    return `${model} on ${plural(Math.round(count), "triangle")} takes about ${(bytes / 1e9).toFixed(1)} GB of memory; `
-      + `allowed: ${ROOM / 1e9} GB, which a page has, thus up to ${plural(rounded(ROOM / MEMORY[model]), "triangle")}`;
-  }
-
   /** Runs a model, as by Apply. Returns arrays by name, moved points, history, numbers and warnings. */
   async run(model, options = {}, notes = [], shown = null) {
     await this.ready;
     if (!this.mesh) { throw new Error("There is no surface; open a file first."); }
-    const refusal = this.refusal(model, options);
-    if (refusal) { throw new Error(refusal); }
+    const tooLarge = refusal(this.mesh, model, options);
+    if (tooLarge) { throw new Error(tooLarge); }
     const { mesh } = this, start = performance.now(), number = ++this.runs;
     this.running = number;
     $("progress").removeAttribute("value");
@@ -444,53 +426,6 @@ function mainResult(names, input) {
   const ofData = input && names.find((name) => name.startsWith(input) && name !== input);
   const wanted = [/^texture$/i, /^(distance|arrivaltime)$/i, /meancurvature/i, /^mean$/i, /direction/i];
   return names.find((name) => name === "RegionId") || ofData || wanted.map((pattern) => names.find((name) => pattern.test(name))).find(Boolean) || names[0] || "";
-}
-
-/** About how many triangles a run has, which bisects edges that are longer than refine_to. */
-function trianglesOf({ points, triangles }, { refine_to: asked, feature_size: size = 0, maximum_number_of_triangles: most = 4e6 }) {
-  const own = triangles.length / 3, length = asked === undefined || asked < 0 ? size / 8 : asked;
-  if (!(length > 0)) { return own; }
-  let area = 0;
-  for (let i = 0; i < triangles.length; i += 3) {
-    const [a, b, c] = [0, 1, 2].map((k) => 3 * triangles[i + k]);
-    const [u, v] = [b, c].map((corner) => [0, 1, 2].map((axis) => points[corner + axis] - points[a + axis]));
-    area += 0.5 * Math.hypot(...cross(u, v));
-  }
-  // Of the edges that bisection leaves, the mean is three quarters of the longest.
-  return Math.max(own, Math.min(most, area / (0.24 * length * length)));
-}
-
-/** Values at 200 of the points. */
-function sampled({ values, components }) {
-  const count = values.length / components, step = Math.max(1, count / 200), points = [];
-  for (let i = 0.5 * step; i < count; i += step) { points.push(Math.floor(i)); }
-  return { points, values: points.map((p) => values[components * p]) };
-}
-
-/**
- * Size, extent, a coordinate as the data of a mesh that has none, and the view from three quarters above:
- * y is up in scans, z in parts to print and in brains, which are seen from outside.
- */
-function measure({ points }, kind) {
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < points.length; ++i) {
-    low[i % 3] = Math.min(low[i % 3], points[i]);
-    high[i % 3] = Math.max(high[i % 3], points[i]);
-  }
-  const extent = high.map((x, axis) => x - low[axis]), size = Math.max(...extent);
-  const isScan = /OBJ|OFF|PLY/.test(kind), isBrain = /GIFTI|FreeSurfer/.test(kind), up = isScan ? 1 : 2;
-  const axis = extent[up] > 1e-3 * size ? up : extent.indexOf(size);
-  const view = isScan ? [[0.55, 0.55, 1], [0, 1, 0]]
-    : [isBrain ? [low[0] + high[0] < 0 ? -1 : 1, -0.6, 0.4] : [0.55, -1, 0.55]];
-  return { extent, size, own: { name: axis === up ? "Height" : `Coordinate_${"xyz"[axis]}`, axis }, view };
-}
-
-function highest({ points, own: { axis } }) {
-  let best = axis;
-  for (let i = axis; i < points.length; i += 3) {
-    if (points[i] > points[best]) { best = i; }
-  }
-  return (best - axis) / 3;
 }
 
 const page = new Page();
