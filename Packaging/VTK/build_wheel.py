@@ -67,18 +67,19 @@ def build(version, out):
         raise SystemExit(f"VERSION is {version}; allowed: {', '.join(assemble_sdk.SDKS)} and their patches. If pip "
                          f"finds vtk-sdk {minor}: SURFACEDIFFUSION_PYPI_VTK={minor} pip wheel Packaging/VTK")
     work = ROOT / "build/vtk-wheel"
+    name = f"{version}-{sys.implementation.cache_tag}"
     content = fetch_sdk(assemble_sdk.SDKS[minor], work / f"sdk-{minor}")
-    programs, libraries = make_environment(version, work / f"vtk-{version}")
-    package = assemble_sdk.assemble(version, content, libraries, work / f"package-{version}")
+    programs, libraries = make_environment(version, work / f"environment-{name}")
+    package = assemble_sdk.assemble(version, content, libraries, work / f"package-{name}")
 
     environment = {"PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
                    "CC": os.environ.get("CC", "cc"), "CXX": os.environ.get("CXX", "c++"),  # not Python's own
                    "VTK_DIR": str(package), "SURFACEDIFFUSION_PYPI_VTK": minor,
-                   "SKBUILD_WHEEL_BUILD_TAG": minor, "SKBUILD_BUILD_DIR": str(work / f"build-{version}"),
+                   "SKBUILD_WHEEL_BUILD_TAG": minor, "SKBUILD_BUILD_DIR": str(work / f"build-{name}"),
                    "SKBUILD_CMAKE_DEFINE": "SURFACEDIFFUSION_UNITY_BUILD=ON"}
     if shutil.which("ccache"):
         environment.update(CMAKE_CXX_COMPILER_LAUNCHER="ccache", CCACHE_BASEDIR=str(ROOT), CCACHE_DEPEND="1")
-    plain, repaired = work / f"plain-{version}", work / f"repaired-{version}"
+    plain, repaired = work / f"plain-{name}", work / f"repaired-{name}"
     for folder in (plain, repaired):
         shutil.rmtree(folder, ignore_errors=True)
     call(programs / "pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", plain, HERE, **environment)
