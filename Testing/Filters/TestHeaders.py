@@ -11,6 +11,7 @@ Exit code 77 (skipped) means that this VTK, 9.1, knows no such namespace."""
 import json
 import os
 import random
+import re
 import shlex
 import subprocess
 import sys
@@ -27,8 +28,9 @@ NAMESPACE = ["-DvtkABINamespace_h", "-DVTK_HAS_ABI_NAMESPACE=1", "-DVTK_ABI_NAME
 
 def options():
     """Those by which the compiler finds headers when it compiles the library."""
+    # VTK 9.7 names the target after the library.
     entry = next(each for each in json.loads(COMMANDS.read_text())
-                 if "Filters.dir" in each.get("output", each["command"]))
+                 if re.search(r"(^|[ /])Filters/CMakeFiles/(Filters|vtkSurfaceDiffusion)\.dir/", each["command"]))
     words = iter(shlex.split(entry["command"]))
     kept = []
     for word in words:
