@@ -102,6 +102,12 @@ if (SURFACEDIFFUSION_WRAP_PYTHON)
   # Where the classes of earlier sources are in this build folder; it would hide the package for numpy.
   file(REMOVE_RECURSE "${CMAKE_BINARY_DIR}/${python_destination}/surfacediffusion")
   set(python_dir "${CMAKE_BINARY_DIR}/${python_destination}/vtkSurfaceDiffusion")
+  set(install_vtk "install VTK ${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}") # what the error of another VTK says
+  set(build_module "pip install Packaging/VTK")
+  if (SURFACEDIFFUSION_PYPI_VTK)
+    set(install_vtk "pip install vtk==${SURFACEDIFFUSION_PYPI_VTK}.*")
+    set(build_module "Packaging/VTK/build_wheel.py")
+  endif ()
   configure_file(CMake/__init__.py.in "${python_dir}/__init__.py" @ONLY)
   set(python_files "${python_dir}/__init__.py")
 
