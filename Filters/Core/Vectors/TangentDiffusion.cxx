@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Vectors/TangentDiffusion.h"
 
-#include "Core/Models/ExponentialSeries.h"
+#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/MixedMass.h"
 
 #include <algorithm>
