@@ -139,6 +139,7 @@ def check_contents(wheel):
 
 
 def main(folder, versions):
+    assert set(FILTERS) == {path.stem for path in ROOT.glob("Filters/vtk*Filter.h")} - {"vtkSurfaceFilter"}
     shutil.rmtree(folder, ignore_errors=True)
     number = write_cases(folder / "cases")
     runner = ROOT / "Testing/Numpy/run_filters.py"
