@@ -112,11 +112,11 @@ void GeneralizedVariationMinimizer::SetPenalties(const Vector& ranges)
 VariationMinimizer::Report GeneralizedVariationMinimizer::Minimize(const Values& g, const Values& f,
   Values& u, const ProgressMonitor& progress, bool /*keepMultipliers*/)
 {
-  bool isSingle = this->Options.StopTolerance >=
+  this->IsSingle = this->Options.StopTolerance >=
     (this->Vertices->IsSplit() ? SmallestSingleGapOfSplit : SmallestSingleGap);
   this->Initial = u;
   this->Vertices->Start(g, f, u, false);
-  this->Start(u, isSingle);
+  this->Start(u);
   const double startEnergy = this->GroupEnergy(this->X) + this->Vertices->Energy(u);
   if (!std::isfinite(startEnergy))
   {
@@ -151,18 +151,7 @@ VariationMinimizer::Report GeneralizedVariationMinimizer::Minimize(const Values&
     progress.Report(fraction);
     if (isCheck)
     {
-      if (report.Iterations > 0)
-      {
-        pace.Take(report.AbsoluteGap, this->GrowthRate);
-      }
-      if (isSingle && pace.ChecksSinceSmallest == PenaltyPace::MostChecks)
-      {
-        isSingle = false;
-        this->Descent.SetSinglePrecision(false);
-        this->SetMatrix();
-      }
-      this->SetGrowth(this->GrowthRate > 0.0 ? pace.Growth : 1.0);
-      this->SetResidual();
+      this->AdaptPenalty(report, pace);
     }
     ++report.Iterations;
     this->Vertices->Update(u, OverRelaxation);
@@ -185,8 +174,25 @@ VariationMinimizer::Report GeneralizedVariationMinimizer::Minimize(const Values&
   return report;
 }
 
+/// The next penalty, and the residual at it; double precision if the gap does not fall any more.
+void GeneralizedVariationMinimizer::AdaptPenalty(const Report& report, PenaltyPace& pace)
+{
+  if (report.Iterations > 0)
+  {
+    pace.Take(report.AbsoluteGap, this->GrowthRate);
+  }
+  if (this->IsSingle && pace.ChecksSinceSmallest == PenaltyPace::MostChecks)
+  {
+    this->IsSingle = false;
+    this->Descent.SetSinglePrecision(false);
+    this->SetMatrix();
+  }
+  this->SetGrowth(this->GrowthRate > 0.0 ? pace.Growth : 1.0);
+  this->SetResidual();
+}
+
 /// The first iteration: w = 0, no multipliers, and the first penalty.
-void GeneralizedVariationMinimizer::Start(const Values& u, bool isSingle)
+void GeneralizedVariationMinimizer::Start(const Values& u)
 {
   const Index rows = this->Operator.NumberOfRows();
   const Index groups = this->Operator.NumberOfGroups();
@@ -217,7 +223,7 @@ void GeneralizedVariationMinimizer::Start(const Values& u, bool isSingle)
   this->Growth = 1.0;
   this->BestDual = 0.0; // no energy is negative
   this->LastEnergy = std::numeric_limits<double>::infinity();
-  this->Descent.SetSinglePrecision(isSingle);
+  this->Descent.SetSinglePrecision(this->IsSingle);
   this->SetMatrix();
 }
 

@@ -58,7 +58,8 @@ public:
 
 private:
   void SetPenalties(const Vector& ranges);
-  void Start(const Values& u, bool isSingle);
+  void Start(const Values& u);
+  void AdaptPenalty(const Report& report, PenaltyPace& pace);
   void SetGrowth(double growth);
   void SetMatrix();
   void SetResidual();
@@ -95,6 +96,7 @@ private:
   Values ColumnShifts;
   Values Load; ///< of fixed vertices, at the first penalties
   QuadraticDescent Descent;
+  bool IsSingle = false; ///< whether it iterates in single precision
   Values X, RightHandSide;
   Values Initial; ///< u on entry
   Values Split, Multipliers; ///< two rows per group; multipliers are scaled by the penalty
