@@ -175,6 +175,17 @@ def copied_page(path):
     return re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", change, text)
 
 
+def start_page(text):
+    """With a scene, and a link to the page without a server where build.sh makes that."""
+    parts = ["The mouse turns the surfaces: noisy data, and total variation with less and less weight of the data.\n",
+             "```{raw} html",
+             '<iframe src="scenes/intrinsic_tv_fidelity_weight.html" title="Total variation" width="100%" '
+             'height="240" style="border: 0"></iframe>']
+    if shutil.which("em++"):
+        parts.append('<p><a href="page/index.html">Open the page</a> to see and filter surfaces of your own.</p>')
+    return text.replace("<!-- page -->", "\n".join([*parts, "```"]))
+
+
 def main():
     warnings.simplefilter("error", sd.SurfaceDiffusionWarning)
     shutil.rmtree(SITE, ignore_errors=True)
@@ -189,6 +200,7 @@ def main():
     (SITE / "filters/index.md").write_text(
         "# Filters\n\n```{toctree}\n:maxdepth: 1\n\n" + "\n".join(f.name for f in FILTERS) + "\n```\n")
     (SITE / "command.md").write_text(command_reference.page())
+    (SITE / "index.md").write_text(start_page((SITE / "index.md").read_text()))
     for path, name in PAGES.items():
         (SITE / f"{name}.md").write_text(copied_page(path))
 
