@@ -138,7 +138,7 @@ public:
    * for noise of 10 % on a sphere, a torus and a plate, the error of TV is 2.2 to 7.5 times that of
    * TGV on ramps and roofs, 1.1 to 1.5 times on ramps with a cliff and on waves, and 0.9 to 1 times
    * on plateaus. There are five times as many unknowns, and a gap of 1e-3, enough for noisy data,
-   * takes some 30 times as long.
+   * takes 30 to 60 times as long.
    *
    * TGV needs Mode SteadyState, EdgeFunction TotalVariation, equal AlongDiffusivity and
    * AcrossDiffusivity (a factor of the sum above), Discretization Linear, BlurFWHM 0 and a

@@ -87,6 +87,7 @@ TEST(SettingRanges, EndWhereTheySay)
     { variation, "Beta", { 0.0 }, positive },
     { variation, "EdgeThreshold", { 0.0, -1.0 }, positive },
     { variation, "StopTolerance", { 1.0 }, "" },
+    { variation, "TGVLength", { 0.0, -1.0 }, positive },
     { variation, "AcrossEdgeFunction", { -1.0, 7.0 }, "0 Same, 1 TotalVariation" },
     { variation, "ChromaWeight", { 0.0 }, positive },
     { variation, "ChromaticityWeight", { -1.0 }, positive },
@@ -204,6 +205,29 @@ TEST(SettingRanges, OfSearchesBlurAndColourModelsExcludeOtherModels)
     { [](auto& s) { s.Color.Model = ColorModel::Opponent, s.FidelityNorm = FidelityNorm::L1; },
       "FidelityNorm is 1; allowed: 0 L2" },
     { [](auto& s) { s.Blur.FWHM = 1.0; }, "Mode is 0; allowed: 1 SteadyState together with" },
+    { [](auto& s) { s.Regularizer = Regularizer::TGV; },
+      "Mode is 0; allowed: 1 SteadyState together with Regularizer TGV" },
+    { [](auto& s)
+      {
+        s.Mode = TotalVariationMode::SteadyState;
+        s.Regularizer = Regularizer::TGV;
+        s.Discretization = Discretization::CrouzeixRaviart;
+      },
+      "Discretization is 1; allowed: 0 Linear together with Regularizer TGV" },
+    { [](auto& s)
+      {
+        s.Mode = TotalVariationMode::SteadyState;
+        s.Regularizer = Regularizer::TGV;
+        s.EdgeFunction = EdgeFunctionKind::Charbonnier;
+      },
+      "EdgeFunction is 3; allowed: 0 TotalVariation together with Regularizer TGV" },
+    { [](auto& s)
+      {
+        s.Mode = TotalVariationMode::SteadyState;
+        s.Regularizer = Regularizer::TGV;
+        s.Color.Model = ColorModel::ChromaticityBrightness;
+      },
+      "ColorModel is 2; allowed: 0 RGB and 1 Opponent together with Regularizer TGV" },
     { [](auto& s)
       {
         s.Mode = TotalVariationMode::SteadyState;

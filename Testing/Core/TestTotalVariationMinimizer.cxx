@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/TotalVariation/TotalVariationMinimizer.h"
 #include "Core/Models/TotalVariation/VertexSplitting.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/TangentVectors.h"
