@@ -25,7 +25,8 @@ function refusal(mesh, model, options) {
 }
 
 /** About how many triangles a run has, which bisects edges that are longer than refine_to. */
-function trianglesOf({ points, triangles }, { refine_to: asked, feature_size: size = 0, maximum_number_of_triangles: most = 4e6 }) {
+function trianglesOf({ points, triangles }, options) {
+  const { refine_to: asked, feature_size: size = 0, maximum_number_of_triangles: most = 4e6 } = options;
   const own = triangles.length / 3, length = asked === undefined || asked < 0 ? size / 8 : asked;
   if (!(length > 0)) { return own; }
   let area = 0;

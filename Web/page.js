@@ -425,7 +425,8 @@ class Page {
 function mainResult(names, input) {
   const ofData = input && names.find((name) => name.startsWith(input) && name !== input);
   const wanted = [/^texture$/i, /^(distance|arrivaltime)$/i, /meancurvature/i, /^mean$/i, /direction/i];
-  return names.find((name) => name === "RegionId") || ofData || wanted.map((pattern) => names.find((name) => pattern.test(name))).find(Boolean) || names[0] || "";
+  const found = wanted.map((pattern) => names.find((name) => pattern.test(name))).find(Boolean);
+  return names.find((name) => name === "RegionId") || ofData || found || names[0] || "";
 }
 
 const page = new Page();
