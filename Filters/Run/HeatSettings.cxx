@@ -106,8 +106,11 @@ void HeatSettings::CheckTogether(const FieldSummary* fields, Problems& problems)
   {
     RequireChoice("Mode", this->Mode, HeatMode::SteadyState, "SteadyState",
       Word::Setting("BlurFWHM"), problems);
-    RequireChoice("VectorType", this->Vectors.Type, VectorType::Components, "Components",
-      Word::Setting("BlurFWHM"), problems);
+    Require(this->Vectors.Type != VectorType::Tangent, Word::Setting("VectorType"),
+      Word::Number("VectorType", this->Vectors.Type),
+      Sentence(Word::NumberedChoice("VectorType", VectorType::Components, "Components"))
+        << " together with " << Word::Setting("BlurFWHM"),
+      problems);
   }
   if (this->Period > 0.0 && this->Vectors.Type == VectorType::Tangent)
   {

@@ -291,7 +291,7 @@ void Run::MakeModel(
   block.IsInCellPlanes = block.AreTangent && traits.DropsNormalPart;
   if (traits.Vectors == VectorType::Automatic)
   {
-    WarnOfVectors(this->Tangents, block.AreTangent, block.Result);
+    WarnOfVectors(fields.DataName, this->Tangents, block.AreTangent, block.Result);
   }
   if (traits.UsesKnownValues)
   {

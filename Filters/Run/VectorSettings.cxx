@@ -122,9 +122,9 @@ TangentShare MeasureTangents(const Surface& surface, const Fields& fields,
   return { sums[0], sums[1] };
 }
 
-void WarnOfVectors(const TangentShare& share, bool areTangent, RunResult& result)
+void WarnOfVectors(const Word& name, const TangentShare& share, bool areTangent, RunResult& result)
 {
-  Sentence text(Word::Array("InputArray"));
+  Sentence text(name);
   if (areTangent)
   {
     result.WarnOnce(

@@ -38,7 +38,10 @@ struct TangentShare
   }
   bool AreTangent() const { return this->Known > 0.0 && this->Tangent >= 0.9 * this->Known; }
   /// Too many for chance, and too few for tangent vectors.
-  bool IsPartly() const { return this->Known > 0.0 && !this->AreTangent() && this->Tangent >= 0.5 * this->Known; }
+  bool IsPartly() const
+  {
+    return this->Known > 0.0 && !this->AreTangent() && this->Tangent >= 0.5 * this->Known;
+  }
 };
 
 /// Collective.
@@ -46,7 +49,7 @@ TangentShare MeasureTangents(const Surface& surface, const Fields& fields,
   const Reduction& processes, const ParallelFor& parallel);
 
 /// Says that VectorType Automatic took the data for tangent vectors, or that they are partly.
-void WarnOfVectors(const TangentShare& share, bool areTangent, RunResult& result);
+void WarnOfVectors(const Word& name, const TangentShare& share, bool areTangent, RunResult& result);
 
 /// Of vectors at cells the parts in the planes of the cells.
 void ProjectIntoCells(
