@@ -494,7 +494,8 @@ TEST(AutomaticWeight, AComponentHasTheResultThatItHasAlone)
   TotalVariationSettings tv;
   tv.Mode = TotalVariationMode::SteadyState;
   tv.Units = UnitsMode::Absolute;
-  EXPECT_LT(difference(tv), 1e-3);
+  // Up to the tolerance of its minimisers.
+  EXPECT_LT(difference(tv), 5e-3);
 }
 
 } // namespace SurfaceDiffusion
