@@ -23,16 +23,17 @@ namespace
 constexpr double LargestMagnitude = 1e100;
 constexpr double SmallestMagnitude = 1e-100;
 
-/// The smallest and the largest value of data with a period.
-ValueBounds BoundsOfAngles(const Fields& fields, double period, const Reduction& processes)
+/// The smallest and the largest known value of data with a period. values: those of the data.
+ValueBounds BoundsOfAngles(
+  const Values& values, const Fields& fields, bool inpaint, const Reduction& processes)
 {
   ValueBounds bounds;
-  const Values& values = fields.Data.Values;
-  for (Eigen::Index k = 0; k < values.size() && period > 0.0; ++k)
+  for (Eigen::Index i = 0; i < values.rows(); ++i)
   {
-    if (std::isfinite(values.data()[k]))
+    const bool isKnown = !IsSet(fields.Missing, i) && !fields.IsLeftOut(i, inpaint);
+    if (isKnown && values.row(i).allFinite())
     {
-      bounds.Widen({ values.data()[k], values.data()[k] });
+      bounds.Widen({ values.row(i).minCoeff(), values.row(i).maxCoeff() });
     }
   }
   return OfAllProcesses(bounds, processes);
@@ -121,7 +122,7 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   const ModelTraits traits = this->Settings->DescribeModel();
   block.HasLinearLight = fields->DataAreBytes && traits.UsesLinearLight;
   block.Period = traits.Period;
-  block.Angles = BoundsOfAngles(*fields, traits.Period, processes);
+  const Values angles = traits.Period > 0.0 ? fields->Data.Values : Values();
   block.Encode(fields->Data.Values, this->Parallel);
   const std::vector<char> mask = fields->Mask.Values; // as it was given
   fields->Data.OnCells =
@@ -134,6 +135,7 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   }
   this->LeaveOutUndetermined(input, *fields, processes, block, progress);
   const bool inpaint = this->Settings->MaskMode == MaskMode::Inpaint;
+  block.Angles = BoundsOfAngles(angles, *fields, inpaint, processes);
   block.Statistics = ValueStatistics();
   block.Statistics.Add(*block.Surface, *fields, inpaint, processes);
   block.HasData = processes.Any(fields->Data.Values.cols() > 0);

@@ -10,6 +10,7 @@ set(below_Statistics Foundation Surface Operators)
 set(below_Models Foundation Surface Operators Solvers Statistics)
 set(below_Geometry Foundation Surface Operators Solvers)
 set(below_Geodesics Foundation Surface Operators Solvers)
+set(below_Vectors Foundation Surface Operators Solvers Statistics Models Geometry)
 
 file(GLOB folders LIST_DIRECTORIES true RELATIVE "${FOLDER}" "${FOLDER}/*")
 set(number_of_includes 0)

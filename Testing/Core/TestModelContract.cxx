@@ -348,7 +348,9 @@ TEST_P(NumberingContract, SameResultInAnyNumberingOrientationAndPosture)
     std::swap(renumbered.Faces(t, 0), renumbered.Faces(t, 1));
   }
   const CellInput input = this->MakeInput(surface);
-  if (!this->Settings->DescribeModel().NeedsDirections && !this->UsesRandomNumbers())
+  const ModelTraits traits = this->Settings->DescribeModel();
+  const bool hasVectors = traits.NeedsDirections || traits.Vectors == VectorType::Tangent;
+  if (!hasVectors && !this->UsesRandomNumbers()) // vectors are not turned here
   {
     renumbered = Moved(Rotated(renumbered, 2.0), { 3.0, -2.0, 5.0 }); // numbers belong to places
   }
@@ -479,7 +481,7 @@ TEST_P(ModelContract, ContinuesAfterWantOfMemoryAtAnyPlace)
 
 TEST_P(DataModelContract, StartsFromTheDataToTheLastBit)
 {
-  if (this->Kind.HasUnitVectors())
+  if (this->Kind.HasUnitVectors() || this->Settings->DescribeModel().Period > 0.0)
   {
     return; // from their directions
   }
@@ -493,6 +495,10 @@ TEST_P(DataModelContract, StartsFromTheDataToTheLastBit)
 
 TEST_P(DataModelContract, ConstantsStay)
 {
+  if (this->Settings->DescribeModel().Vectors == VectorType::Tangent)
+  {
+    return; // no field in space that is constant lies in the surface
+  }
   const Eigen::RowVector3d different(-273.15, 0.1, 40.0);
   for (const Testing::Surface& surface :
     { ThreeParts(), Moebius(41, 4), Jittered(Strip(20, 20), 0.015, 0, 1, 0, 1) })

@@ -166,6 +166,10 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
       f->AutomaticFidelityOn();
       f->SetStopTolerance(0.1);
     });
+  for (const char* name : { "VectorType", "VectorLaplacian", "NormalPart" })
+  {
+    needed[name] = With<Heat>([](Heat* f) { f->SetVectorTypeToTangent(); });
+  }
   needed["vtkFVMHeatFilter BlurFWHM"] = With<Heat>(
     [](Heat* f)
     {

@@ -116,6 +116,7 @@ std::vector<FilterKind> FiltersThatTakeAllValues()
     const std::string name = kind.Name;
     return name.rfind("Interpolation", 0) == 0 || name.rfind("MumfordShah", 0) == 0 ||
       name == "SegmentationOfCells" || name == "HeatAutomatic" || name == "TVAutomatic" ||
+      name == "HeatPeriodicOfCells" || name == "HeatTangentSteady" ||
       name == "HeatDeblurredFound" || name == "TVDeblurredFound";
   };
   kinds.erase(std::remove_if(kinds.begin(), kinds.end(), asks), kinds.end());

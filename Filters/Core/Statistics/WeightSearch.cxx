@@ -43,7 +43,7 @@ void DiscrepancySearch::FindNext()
 {
   if (this->Phase == Bracketing && this->FA * this->FB > 0.0)
   {
-    this->HasRoot = std::abs(this->B - this->Origin) <= std::log(1e8);
+    this->HasRoot = std::abs(this->B) <= std::log(1e8);
     this->A = this->B;
     this->FA = this->FB;
     if (this->HasRoot)
@@ -109,7 +109,7 @@ void RiskSearch::Take(const NoiseResponse& trial)
 void RiskSearch::Try(double exponent)
 {
   this->Next = static_cast<int>(exponent);
-  this->X = this->Origin + exponent * std::log(4.0);
+  this->X = exponent * std::log(4.0);
 }
 
 double RiskSearch::RiskAt(int exponent) const

@@ -27,7 +27,8 @@ public:
   virtual ~WeightSearch() = default;
 
   bool IsDone() const { return this->Done; }
-  double Trial() const { return std::exp(this->X); } ///< the weight to try, or the found one
+  /// The weight to try, or the found one.
+  double Trial() const { return this->First * std::exp(this->X); }
   /// Whether it needs more than the mean square.
   virtual bool NeedsRisk() const { return false; }
   virtual void Take(const NoiseResponse& trial) = 0;
@@ -35,12 +36,12 @@ public:
 
 protected:
   explicit WeightSearch(double start)
-    : Origin(std::log(start))
-    , X(this->Origin)
+    : First(start)
   {
   }
   bool Done = false;
-  double Origin, X; ///< logarithms
+  double First;
+  double X = 0.0; ///< the logarithm of the trial over the first one, which has no unit
 };
 
 /// A search that has found its weight.
@@ -87,7 +88,7 @@ private:
   } Phase = Start;
   double Noise;
   double Stride = 0.0;
-  double A = 0.0, B = 0.0; ///< logarithms of two weights
+  double A = 0.0, B = 0.0; ///< the X of two weights
   double FA = 0.0, FB = 0.0; ///< their discrepancies above the noise
   bool IsClose = false, HasRoot = true;
 };

@@ -69,27 +69,39 @@ TangentDiffusion::TangentDiffusion(std::shared_ptr<const Assembler> assembler,
   {
     this->NormalParts = this->Planes->NormalParts(this->Data.Start);
   }
-  this->Data.Given = this->Data.Start = Values();
+  this->Data.Given = Values();
+  if (!this->Data.Fixed.any())
+  {
+    this->Data.Start = Values();
+  }
   this->MakeState();
 }
 
+/// Fixed vertices keep what they have, also along the normal.
 void TangentDiffusion::MakeState()
 {
-  this->U =
-    this->Planes->Vectors(this->W, this->Normal ? this->Normal->State() : this->NormalParts);
+  this->Planes->SetVectors(
+    this->W, this->Normal ? this->Normal->State() : this->NormalParts, this->U);
+  for (Index i = 0; i < static_cast<Index>(this->Data.Start.rows()); ++i)
+  {
+    if (this->Data.Fixed[i])
+    {
+      this->U.row(i) = this->Data.Start.row(i);
+    }
+  }
 }
 
-/// M w, or with the mixed mass matrix B w; of a steady state what stands in their place.
-Values TangentDiffusion::Mass(const Values& w) const
+/// B becomes M w, or with the mixed mass matrix B w; of a steady state what stands in their place.
+void TangentDiffusion::StartFrom(const Values& w)
 {
-  Values product = Values::Zero(w.rows(), w.cols());
+  this->B.resize(w.rows(), w.cols());
+  this->B.setZero();
   if (this->MassDifference.rows() > 0)
   {
-    Multiply(this->MassDifference, w, product, this->Parallel);
+    Multiply(this->MassDifference, w, this->B, this->Parallel);
   }
   ForEach(this->Parallel, static_cast<Index>(w.rows()),
-    [&](Index row) { product.row(row) += this->Inertia[row] * w.row(row); });
-  return product;
+    [&](Index row) { this->B.row(row) += this->Inertia[row] * w.row(row); });
 }
 
 void TangentDiffusion::Prepare(const ProgressMonitor& progress)
@@ -132,30 +144,27 @@ void TangentDiffusion::Prepare(const ProgressMonitor& progress)
   this->Prepared = true;
 }
 
-/// The solution of (M + dt (K + lambda M chi)) w = mass + dt lambda M chi f, with B in place of the M
-/// that stands alone.
-void TangentDiffusion::Solve(const Values& mass, double dt, Values& solution, StepReport& report,
-  const ProgressMonitor& progress)
+/// Solution becomes that of (M + dt (K + lambda M chi)) w = B + dt lambda M chi f, after StartFrom().
+void TangentDiffusion::Solve(double dt, StepReport& report, const ProgressMonitor& progress)
 {
-  Values b = mass;
-  ForEach(this->Parallel, static_cast<Index>(b.rows()),
+  ForEach(this->Parallel, static_cast<Index>(this->B.rows()),
     [&](Index row)
     {
       if (this->Data.Fixed[row / 2])
       {
-        b.row(row) = this->Load.row(row);
+        this->B.row(row) = this->Load.row(row);
         return;
       }
       if (this->Load.rows() > 0)
       {
-        b.row(row) += this->Load.row(row);
+        this->B.row(row) += this->Load.row(row);
       }
       if (this->Fit.IsPresent())
       {
-        b.row(row) += dt * this->RowWeight(row) * this->Area(row) * this->F.row(row);
+        this->B.row(row) += dt * this->RowWeight(row) * this->Area(row) * this->F.row(row);
       }
     });
-  const SolveReport solve = this->Solver->Solve(b, solution, progress);
+  const SolveReport solve = this->Solver->Solve(this->B, this->Solution, progress);
   report.Add(solve);
   RequireAnswer(solve, this->Solver->GetLimits());
 }
@@ -165,43 +174,53 @@ void TangentDiffusion::TakeStep(StepReport& report, const ProgressMonitor& progr
   const LinearDiffusion::Settings& diffusion = this->Options.Diffusion;
   const bool isSteady = diffusion.TimeScheme == LinearDiffusion::Scheme::SteadyState;
   const double dt = isSteady ? 1.0 : diffusion.ImplicitStep();
-  Values solution = this->W;
-  switch (diffusion.TimeScheme)
+  this->Solution = this->W;
+  if (diffusion.TimeScheme == LinearDiffusion::Scheme::Exponential)
   {
-    case LinearDiffusion::Scheme::BackwardEuler:
-    case LinearDiffusion::Scheme::SteadyState:
-      this->Solve(this->Mass(this->W), dt, solution, report, progress);
-      break;
-    case LinearDiffusion::Scheme::SDIRK2: // see LinearDiffusion::StepSDIRK2()
-    {
-      this->Solve(this->Mass(this->W), dt, solution, report, progress.Part(0.0, 0.5));
-      constexpr double ratio = (1.0 - LinearDiffusion::Gamma) / LinearDiffusion::Gamma;
-      const Values middle = this->W + ratio * (solution - this->W);
-      this->Solve(this->Mass(middle), dt, solution, report, progress.Part(0.5, 1.0));
-      break;
-    }
-    case LinearDiffusion::Scheme::Exponential: // see ExponentialSeries
-    {
-      constexpr int last = ExponentialSeries::Degree;
-      Values term = this->W;
-      Values before = term;
-      Values sum = ExponentialSeries::Coefficients[0] * term;
-      for (int k = 1; k <= last; ++k)
-      {
-        solution = term;
-        this->Solve(this->Mass(term), dt, solution, report,
-          progress.Part((k - 1.0) / last, static_cast<double>(k) / last));
-        const Values next =
-          k == 1 ? Values(2.0 * solution - term) : Values(4.0 * solution - 2.0 * term - before);
-        before = term;
-        term = next;
-        sum += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * term;
-      }
-      solution = sum;
-      break;
-    }
+    this->StepExponential(dt, report, progress);
   }
-  this->W = solution;
+  else if (diffusion.TimeScheme == LinearDiffusion::Scheme::SDIRK2) // LinearDiffusion::StepSDIRK2()
+  {
+    this->StartFrom(this->W);
+    this->Solve(dt, report, progress.Part(0.0, 0.5));
+    constexpr double ratio = (1.0 - LinearDiffusion::Gamma) / LinearDiffusion::Gamma;
+    this->Term = this->W + ratio * (this->Solution - this->W);
+    this->StartFrom(this->Term);
+    this->Solve(dt, report, progress.Part(0.5, 1.0));
+  }
+  else
+  {
+    this->StartFrom(this->W);
+    this->Solve(dt, report, progress);
+  }
+  this->W = this->Solution;
+}
+
+/// See ExponentialSeries.
+void TangentDiffusion::StepExponential(
+  double dt, StepReport& report, const ProgressMonitor& progress)
+{
+  constexpr int last = ExponentialSeries::Degree;
+  this->Term = this->Before = this->W;
+  this->Series = ExponentialSeries::Coefficients[0] * this->W;
+  for (int k = 1; k <= last; ++k)
+  {
+    this->StartFrom(this->Term);
+    this->Solve(dt, report, progress.Part((k - 1.0) / last, static_cast<double>(k) / last));
+    ForEach(this->Parallel, static_cast<Index>(this->Term.size()),
+      [&](Index i)
+      {
+        double& term = this->Term.data()[i];
+        double& before = this->Before.data()[i];
+        double& solution = this->Solution.data()[i];
+        const double next = ExponentialSeries::NextTerm(k, solution, term, before);
+        before = term;
+        term = solution = next;
+        this->Series.data()[i] +=
+          ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * next;
+      });
+  }
+  this->Solution = this->Series;
 }
 
 StepReport TangentDiffusion::Advance(const ProgressMonitor& progress)

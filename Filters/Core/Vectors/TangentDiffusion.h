@@ -55,12 +55,12 @@ public:
 private:
   void Prepare(const ProgressMonitor& progress);
   void TakeStep(StepReport& report, const ProgressMonitor& progress);
-  void Solve(const Values& mass, double dt, Values& solution, StepReport& report,
-    const ProgressMonitor& progress);
+  void StepExponential(double dt, StepReport& report, const ProgressMonitor& progress);
+  void StartFrom(const Values& w);
+  void Solve(double dt, StepReport& report, const ProgressMonitor& progress);
   void MakeState();
   double RowWeight(Index row) const { return this->Fit.Weight(row / 2); }
   double Area(Index row) const { return this->Assembly->Mesh().ControlAreas()[row / 2]; }
-  Values Mass(const Values& w) const;
 
   std::shared_ptr<const Assembler> Assembly;
   std::shared_ptr<const TangentPlanes> Planes;
@@ -77,6 +77,8 @@ private:
   Values U; ///< 3m columns
   Vector Inertia; ///< diag(M), or of a steady state a small part of it
   SparseMatrix Matrix, MassDifference;
+  Values B, Solution; ///< of a solve
+  Values Term, Before, Series; ///< of the scheme
   Values Load; ///< of Dirichlet conditions, and their right-hand side
   bool Prepared = false;
 };

@@ -107,9 +107,10 @@ Values TangentPlanes::NormalParts(const Values& vectors) const
   return parts;
 }
 
-Values TangentPlanes::Vectors(const Values& coordinates, const Values& normalParts) const
+void TangentPlanes::SetVectors(
+  const Values& coordinates, const Values& normalParts, Values& vectors) const
 {
-  Values vectors(coordinates.rows() / 2, 3 * coordinates.cols());
+  vectors.resize(coordinates.rows() / 2, 3 * coordinates.cols());
   ForEach(this->Parallel, static_cast<Index>(vectors.rows()),
     [&](Index i)
     {
@@ -120,7 +121,6 @@ Values TangentPlanes::Vectors(const Values& coordinates, const Values& normalPar
           coordinates(2 * i + 1, k) * this->Y(i) + normal * this->Normal(i);
       }
     });
-  return vectors;
 }
 
 } // namespace SurfaceDiffusion

@@ -35,7 +35,13 @@ public:
   /// Of the same the n x m parts c.
   Values NormalParts(const Values& vectors) const;
   /// The n x 3m vectors of coordinates and normal parts; these may have no row: 0.
-  Values Vectors(const Values& coordinates, const Values& normalParts) const;
+  Values Vectors(const Values& coordinates, const Values& normalParts) const
+  {
+    Values vectors;
+    this->SetVectors(coordinates, normalParts, vectors);
+    return vectors;
+  }
+  void SetVectors(const Values& coordinates, const Values& normalParts, Values& vectors) const;
 
 private:
   Eigen::Matrix<double, 3, 2> TriangleAxes(Index t) const;

@@ -125,12 +125,18 @@ double VectorStiffness::Energy(const Values& w, const ParallelFor& parallel) con
   return Sum(parallel, this->Planes.Mesh().NumberOfTriangles(),
     [&](Index t)
     {
-      Eigen::Matrix<double, 6, Eigen::Dynamic> own(6, w.cols());
-      for (int a = 0; a < 3; ++a)
+      const Element element = this->ElementOf(t);
+      double energy = 0.0;
+      for (Eigen::Index k = 0; k < w.cols(); ++k)
       {
-        own.middleRows<2>(2 * a) = w.middleRows<2>(2 * corners(t, a));
+        Eigen::Matrix<double, 6, 1> own;
+        for (int row = 0; row < 6; ++row)
+        {
+          own[row] = w(2 * corners(t, row / 2) + row % 2, k);
+        }
+        energy += 0.5 * own.dot(element * own);
       }
-      return 0.5 * own.cwiseProduct(this->ElementOf(t) * own).sum();
+      return energy;
     });
 }
 
