@@ -68,8 +68,8 @@ VALUES = {
 
 def click(filter, dice, clicked):
     """Changes one property that the panel offers; appends it to `clicked`."""
-    # ColorModel needs data of three components.
-    keys = [key for key in offered(filter) if key not in ("Kinetics", "ColorModel")]
+    # ColorModel and VectorType need data of three components.
+    keys = [key for key in offered(filter) if key not in ("Kinetics", "ColorModel", "VectorType")]
     key = dice.choice(keys)
     prop = filter.SMProxy.GetProperty(key)
     entries = prop.FindDomain("vtkSMEnumerationDomain")
