@@ -63,7 +63,8 @@
  *     Viscous      int sym G : sym G                        2 d - 2 and d - 2
  *
  * up to an error of second order in h. Viscous keeps rigid rotations to round-off. Results at cells are
- * in their planes.
+ * in their planes. At edges of three or more triangles there is no tangent plane: that of two of the
+ * sheets is taken, by the numbering.
  *
  * The energy in the history is 1/2 int (g1 (grad u . e1)^2 + g2 (grad u . e2)^2) + lambda/2
  * int chi (u - f)^2, summed over the components, in (units of the array)^2.

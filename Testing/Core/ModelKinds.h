@@ -39,7 +39,8 @@ enum class Content
 enum class Exemption
 {
   None,
-  Numbering, ///< it starts on a coarser mesh, which depends on the numbering
+  /// It starts on a coarser mesh, or has tangent planes where three sheets meet: by the numbering.
+  Numbering,
   Energy, ///< its energy can rise: eps is halved, or the scheme is explicit
   Allocation ///< one solver is used for different systems in turn
 };
@@ -146,8 +147,8 @@ inline std::vector<ModelKind> AllModelKinds()
       Content::ColorsOnCells),
     MakeKind<Heat>("HeatPeriodic", 2, [](Heat& s) { s.Period = 1.5; }),
     MakeKind<Heat>(
-      "HeatTangent", 3, [](Heat& s) { s.Vectors.Type = VectorType::Tangent; },
-      Content::UnitVectors),
+      "HeatTangent", 3, [](Heat& s) { s.Vectors.Type = VectorType::Tangent; }, Content::UnitVectors,
+      Exemption::Numbering),
     MakeKind<Heat>(
       "HeatTangentOnCells", 2,
       [](Heat& s)
@@ -155,7 +156,7 @@ inline std::vector<ModelKind> AllModelKinds()
         s.Vectors = { VectorType::Tangent, VectorLaplacian::Viscous, NormalPart::Keep };
         s.FidelityWeight = 0.5;
       },
-      Content::UnitVectorsOnCells),
+      Content::UnitVectorsOnCells, Exemption::Numbering),
     MakeKind<Heat>(
       "HeatTangentDiffuse", 2,
       [](Heat& s)
@@ -164,7 +165,7 @@ inline std::vector<ModelKind> AllModelKinds()
         s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential;
         s.MassMatrix = SurfaceDiffusion::MassMatrix::Mixed;
       },
-      Content::UnitVectors),
+      Content::UnitVectors, Exemption::Numbering),
     MakeKind<Heat>("HeatDirected", 2,
       [](Heat& s)
       {
@@ -208,14 +209,16 @@ inline std::vector<ModelKind> AllModelKinds()
       }),
     MakeKind<TV>("TotalVariationSteadyState", 1, setSteady),
     MakeKind<TV>("TotalVariationSteadyStateOnCells", 1, setSteady, Content::ScalarsOnCells),
-    MakeKind<TV>("GeneralizedVariation", 1,
+    MakeKind<TV>(
+      "GeneralizedVariation", 1,
       [=](TV& s)
       {
         setSteady(s);
         s.Regularizer = Regularizer::TGV;
       },
       Content::Colors),
-    MakeKind<TV>("GeneralizedVariationOnCells", 1,
+    MakeKind<TV>(
+      "GeneralizedVariationOnCells", 1,
       [=](TV& s)
       {
         setSteady(s);

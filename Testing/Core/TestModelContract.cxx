@@ -348,9 +348,7 @@ TEST_P(NumberingContract, SameResultInAnyNumberingOrientationAndPosture)
     std::swap(renumbered.Faces(t, 0), renumbered.Faces(t, 1));
   }
   const CellInput input = this->MakeInput(surface);
-  const ModelTraits traits = this->Settings->DescribeModel();
-  const bool hasVectors = traits.NeedsDirections || traits.Vectors == VectorType::Tangent;
-  if (!hasVectors && !this->UsesRandomNumbers()) // vectors are not turned here
+  if (!this->Settings->DescribeModel().NeedsDirections && !this->UsesRandomNumbers())
   {
     renumbered = Moved(Rotated(renumbered, 2.0), { 3.0, -2.0, 5.0 }); // numbers belong to places
   }

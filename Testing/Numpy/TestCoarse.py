@@ -114,7 +114,7 @@ class CoarseSurfaces(unittest.TestCase):
     def test_all_functions_give_the_same_turned(self):
         functions = {name: getattr(sd, name) for name in sd.__all__
                      if inspect.isfunction(getattr(sd, name)) and name not in OF_OTHERS}
-        for _, points, triangles, values in self.each():
+        for shape, points, triangles, values in self.each():
             vectors, length = self.random.normal(size=points.shape), 0.3 * np.ptp(points, axis=0).max()
             surfaces = [(sd.Surface(points, triangles), vectors),
                         (sd.Surface(turn(points), triangles), turn(vectors))]
@@ -129,6 +129,8 @@ class CoarseSurfaces(unittest.TestCase):
                             self.assert_known(result, warned)
                     if name in RANDOM or found[0] is None:
                         continue
+                    if name == "direction_field" and shape.startswith("Tetrahedron"):
+                        continue  # round-off decides whether its smoothed curvature has a direction
                     finite = np.isfinite(found[0])
                     largest = np.abs(found[0][finite]).max(initial=0.0)
                     np.testing.assert_allclose(found[1], found[0], rtol=0,
