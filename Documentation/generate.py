@@ -35,10 +35,11 @@ class Filter:
 
 FILTERS = [
     Filter("heat", "vtkFVMHeatFilter",
-           ("LinearDiffusion", "MixedMass", "AnisotropicDiffusion", "SteadyState", "Deblurring")),
+           ("LinearDiffusion", "MixedMass", "AnisotropicDiffusion", "SteadyState", "Deblurring",
+            "TangentDiffusion", "Period")),
     Filter("intrinsic_tv", "vtkIntrinsicTVFilter",
            ("TotalVariationFlow", "TotalVariationMinimizer", "NonlinearDiffusion", "EdgeFunctions",
-            "CrouzeixRaviart", "ColorModels")),
+            "CrouzeixRaviart", "ColorModels", "GeneralizedVariation")),
     Filter("tensor_diffusion", "vtkTensorDiffusionFilter", ("BeltramiFlow", "StructureDiffusion")),
     Filter("mumford_shah", "vtkMumfordShahFilter", ("MumfordShah",)),
     Filter("segment", "vtkSurfaceSegmentationFilter", ("Segmentation", "RegionBoundaries")),

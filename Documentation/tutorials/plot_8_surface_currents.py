@@ -37,7 +37,9 @@ for name, found in (("measured", measured), ("as vectors", smooth), ("as compone
     error = np.sqrt(((found - true) ** 2).sum(1).mean() / (true ** 2).sum(1).mean())
     out = np.abs((found * normals[used]).sum(1)).max()
     print(f"{name:14s} error {100 * error:3.0f} %, up to {out:.2g} km/day out of the surface")
-assert np.abs((smooth * normals[used]).sum(1)).max() < 1e-6
+# At coasts the planes are those of the triangles there, not of the sphere.
+inside = np.setdiff1d(np.arange(len(used)), number[earth.triangles[dry[earth.triangles].any(axis=1)]])
+assert np.abs((smooth * normals[used]).sum(1))[inside].max() < 1e-6
 
 
 def everywhere(values):

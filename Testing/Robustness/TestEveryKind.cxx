@@ -431,7 +431,8 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
   const std::map<std::string, double> factors = { { "Displacement", length },
     { "ReliefHeight", length }, { "MeanCurvature", 1.0 / length }, { "fGradient", value / length },
     { "fConductionVelocity", length / value }, { "Distance", length },
-    { "ArrivalTime", length / value }, { "e1GradientPotential", length * value } };
+    { "ArrivalTime", length / value }, { "e1GradientPotential", length * value },
+    { "e1Diffused", value } };
   const double usual = this->DataName().empty() ? 1.0 : value;
   const double factor = factors.count(name) > 0 ? factors.at(name) : usual;
   vtkDataArray* const expected = FilterTest::ResultOf(filters[0], name.c_str());
