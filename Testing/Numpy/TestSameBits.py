@@ -159,6 +159,12 @@ class SameBits(unittest.TestCase):
             ("heat", {"values": self.values, "mask": self.mask},
              {"MaskMode": "Exclude", "FWHM": 0.2, "Solver": "Multigrid"}),
             ("heat", {"values": self.values}, {"AutomaticFidelity": True, "Mode": "SteadyState"}),
+            ("heat", {"values": self.values, "mask": self.mask}, {"Period": 0.7, "TimeStep": 1.0}),
+            ("heat", {"values": self.of_faces}, {"Period": 0.7, "TimeStep": 1.0}),
+            ("heat", {"values": self.around, "mask": self.mask},
+             {"VectorType": "Tangent", "VectorLaplacian": "Viscous", "FWHM": 0.2}),
+            ("heat", {"values": self.around_of_faces},
+             {"VectorType": "Tangent", "NormalPart": "Diffuse", "TimeStep": 1.0}),
             ("heat", {"values": self.values}, {"IntrinsicDelaunay": True, "TimeStep": 1.0}),
             ("heat", {"values": self.values, "fidelity": 1.0 + self.points[:, 2] ** 2},
              {"FidelityWeight": 0.5, "TimeStep": 1.0}),
@@ -227,6 +233,8 @@ class SameBits(unittest.TestCase):
             ("derivatives", {"values": self.values, "mask": self.mask}, {"SmoothingFWHM": 0.3}),
             ("derivatives", {"values": self.normals}, {"Quantity": "Curl"}),
             ("derivatives", {"values": self.of_faces}, {"ResultOnCells": True}),
+            ("derivatives", {"values": self.normals[:, [1, 2, 0]], "mask": self.mask}, {"Quantity": "Helmholtz"}),
+            ("derivatives", {"values": self.around_of_faces}, {"Quantity": "Helmholtz", "ResultOnCells": True}),
             ("derivatives", {"values": nan}, {"Quantity": "ConductionVelocity"}),
             ("random_field", {"mask": self.mask}, {"FWHM": 0.5, "NumberOfFields": 19, "RandomSeed": -4}),
             ("random_field", {}, {"Covariance": "MaternNu1", "Range": 0.8, "NumberOfFields": 2}),
@@ -328,6 +336,11 @@ class SameBits(unittest.TestCase):
                      "Curvedness": result.curvedness}
         elif function == "derivatives":
             found = {"values" + properties.get("Quantity", "Gradient"): result}
+            if properties.get("Quantity") == "Helmholtz":
+                del keywords["quantity"]
+                parts = sd.helmholtz(self.surface, arrays["values"], mask=arrays.get("mask"), **keywords)
+                found = {"values" + part: array for part, array in zip(
+                    ("GradientPotential", "CurlPotential", "GradientPart", "CurlPart", "HarmonicPart"), parts)}
             if properties.get("Quantity") == "ConductionVelocity":
                 del keywords["quantity"]
                 found["valuesSpeed"] = sd.conduction_velocity(
@@ -360,6 +373,8 @@ class SameBits(unittest.TestCase):
             if properties.get("ComputeError"):
                 found["valuesError"] = result.error
             expected.pop("history Block")
+        if "Period" in properties:
+            found["valuesCoherence"] = result.coherence
         if function == "mumford_shah":
             found["Edges"] = result.edges
         if function == "tensor_diffusion" and properties.get("DiffusionAxes"):
