@@ -21,8 +21,8 @@ using FidelityModelMaker = std::function<std::unique_ptr<Model>(PointData data, 
 struct FidelityTask
 {
   double NoiseLevel = 0.0; ///< in array units; 0: estimated
-  bool StartsByArea =
-    true; ///< whether weights are 1/length^2, of which 1/h^2 is the first guess; or 1/h
+  /// Whether weights are 1/length^2, and the first guess 1/h^2; otherwise 1/length and 1/h.
+  bool StartsByArea = true;
   bool IsStartOverNoise = false; ///< whether the first guess is that over the noise
   int Steps = 1; ///< the states that are compared with the data are those after so many
   bool ColumnsShareWeight = true; ///< false: each has its own

@@ -331,7 +331,7 @@ def heat(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> NDArray[
     as tangent vectors, which is said in a warning: they are carried along the surface from point to point
     and stay in its plane (`vector_type`, which takes (n, 3k) for several; `vector_laplacian`,
     `normal_part`). Angles and other cyclic data need their `period`; the `coherence` of
-    :func:`heat_steps` tells how far the data around a point agree.
+    :func:`heat_steps` measures how well neighbouring data agree.
 
     More than 32 columns are solved 32 at a time, with the same bits, so that the memory for states
     in double precision does not grow with their number. This does not hold with `automatic_fidelity`,

@@ -10,7 +10,7 @@
 #include <vector>
 
 // Files of surfaces and of values, read from memory. Every reader takes memory in proportion to the
-// bytes that it reads, whatever counts a file declares. The text of an error is one sentence.
+// bytes that it reads, whatever the counts in a file. The text of an error is one sentence.
 namespace SurfaceDiffusion::Files
 {
 

@@ -95,28 +95,19 @@ double SmoothByHeat(const Assembler& assembler, double fwhm, Values& u, LinearSo
   assembler.Fill(matrix, mesh.ControlAreas(), 1.0, coefficients, nullptr, parallel);
   solver.SetMatrix(matrix, progress.Part(0.0, 0.5));
   double missed = 0.0;
-  Values last = u; // the last two terms of the series
-  Values beforeLast = u;
-  Values y = u;
-  u *= ExponentialSeries::Coefficients[0];
-  for (int k = 1; k <= ExponentialSeries::Degree; ++k)
-  {
-    Values b(u.rows(), u.cols());
-    Multiply(massDifference, last, b, parallel);
-    b += mesh.ControlAreas().asDiagonal() * last;
-    const double part = 0.5 + 0.5 * (k - 1) / ExponentialSeries::Degree;
-    const SolveReport report =
-      solver.Solve(b, y, progress.Part(part, part + 0.5 / ExponentialSeries::Degree));
-    RequireAnswer(report, solver.GetLimits());
-    missed = std::max(missed, report.Converged ? 0.0 : report.Residual);
-    for (Eigen::Index i = 0; i < u.size(); ++i)
+  Values b(u.rows(), u.cols());
+  ExponentialSeries::Work work;
+  ExponentialSeries::Apply(u, work,
+    [&](int k, const Values& last, Values& y)
     {
-      double& before = beforeLast.data()[i];
-      before = ExponentialSeries::NextTerm(k, y.data()[i], last.data()[i], before);
-      u.data()[i] += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * before;
-    }
-    last.swap(beforeLast);
-  }
+      Multiply(massDifference, last, b, parallel);
+      b += mesh.ControlAreas().asDiagonal() * last;
+      const double part = 0.5 + 0.5 * (k - 1) / ExponentialSeries::Degree;
+      const SolveReport report =
+        solver.Solve(b, y, progress.Part(part, part + 0.5 / ExponentialSeries::Degree));
+      RequireAnswer(report, solver.GetLimits());
+      missed = std::max(missed, report.Converged ? 0.0 : report.Residual);
+    });
   return missed;
 }
 

@@ -76,6 +76,9 @@ public:
     task.Tolerance = Tolerance;
     this->Solver = MakeSolver(ChooseSolver(SolverMethod::Automatic, task), parallel);
     this->Solver->SetLimits({ Tolerance });
+    this->Operators.TakePattern(this->Stiffness, parallel);
+    this->Operators.Fill(this->Stiffness, Vector::Zero(this->Surface->NumberOfVertices()), 1.0,
+      CotanWeights(*this->Surface, parallel), nullptr, parallel);
   }
 
   Values Solve(Values b, Flags fixed, double& missedResidual, const ProgressMonitor& progress)
@@ -88,18 +91,15 @@ public:
       isFree[c] = !fixed.segment(begin[c], size).any();
       fixed[begin[c]] = fixed[begin[c]] || isFree[c] != 0;
     }
-    SparseMatrix matrix;
-    this->Operators.TakePattern(matrix, this->Parallel);
-    this->Operators.Fill(matrix, Vector::Zero(b.rows()), 1.0,
-      CotanWeights(*this->Surface, this->Parallel), nullptr, this->Parallel);
+    this->Matrix = this->Stiffness;
     Values load;
     this->Operators.Constrain(
-      matrix, fixed, Values::Zero(b.rows(), b.cols()), load, this->Parallel);
+      this->Matrix, fixed, Values::Zero(b.rows(), b.cols()), load, this->Parallel);
     for (Index i = 0; i < static_cast<Index>(b.rows()); ++i)
     {
       b.row(i) *= fixed[i] ? 0.0 : 1.0;
     }
-    this->Solver->SetMatrix(matrix, progress.Part(0.0, 0.7));
+    this->Solver->SetMatrix(this->Matrix, progress.Part(0.0, 0.7));
     Values x = Values::Zero(b.rows(), b.cols());
     const SolveReport report = this->Solver->Solve(b, x, progress.Part(0.7, 1.0));
     RequireAnswer(report, this->Solver->GetLimits());
@@ -123,6 +123,8 @@ private:
   Assembler Operators;
   const ParallelFor& Parallel;
   std::shared_ptr<LinearSolver> Solver;
+  SparseMatrix Stiffness;
+  SparseMatrix Matrix; ///< with the fixed vertices, which the solver may compare with the next
 };
 
 } // namespace

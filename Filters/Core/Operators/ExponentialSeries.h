@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/Types.h"
+
 #include <array>
+#include <cstddef>
 
 namespace SurfaceDiffusion
 {
@@ -38,6 +41,32 @@ struct ExponentialSeries
   static double NextTerm(int k, double y, double last, double beforeLast)
   {
     return k == 1 ? 2.0 * y - last : 4.0 * y - 2.0 * last - beforeLast;
+  }
+
+  /// The terms of Apply(), which later calls do not allocate again.
+  struct Work
+  {
+    Values Last, BeforeLast, Y;
+  };
+
+  /// u becomes exp(-dt L) u. solve(k, last, y): y = Y last for k = 1 to Degree; on entry y is u, and
+  /// then that of the call before.
+  template <typename Solve>
+  static void Apply(Values& u, Work& work, const Solve& solve)
+  {
+    work.Last = work.BeforeLast = work.Y = u;
+    u *= Coefficients[0];
+    for (int k = 1; k <= Degree; ++k)
+    {
+      solve(k, work.Last, work.Y);
+      for (Eigen::Index i = 0; i < u.size(); ++i)
+      {
+        double& next = work.BeforeLast.data()[i];
+        next = NextTerm(k, work.Y.data()[i], work.Last.data()[i], next);
+        u.data()[i] += Coefficients[static_cast<std::size_t>(k)] * next;
+      }
+      work.Last.swap(work.BeforeLast);
+    }
   }
 };
 

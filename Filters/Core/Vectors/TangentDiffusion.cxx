@@ -174,12 +174,13 @@ void TangentDiffusion::TakeStep(StepReport& report, const ProgressMonitor& progr
   const LinearDiffusion::Settings& diffusion = this->Options.Diffusion;
   const bool isSteady = diffusion.TimeScheme == LinearDiffusion::Scheme::SteadyState;
   const double dt = isSteady ? 1.0 : diffusion.ImplicitStep();
-  this->Solution = this->W;
   if (diffusion.TimeScheme == LinearDiffusion::Scheme::Exponential)
   {
     this->StepExponential(dt, report, progress);
+    return;
   }
-  else if (diffusion.TimeScheme == LinearDiffusion::Scheme::SDIRK2) // LinearDiffusion::StepSDIRK2()
+  this->Solution = this->W;
+  if (diffusion.TimeScheme == LinearDiffusion::Scheme::SDIRK2) // LinearDiffusion::StepSDIRK2()
   {
     this->StartFrom(this->W);
     this->Solve(dt, report, progress.Part(0.0, 0.5));
@@ -200,27 +201,15 @@ void TangentDiffusion::TakeStep(StepReport& report, const ProgressMonitor& progr
 void TangentDiffusion::StepExponential(
   double dt, StepReport& report, const ProgressMonitor& progress)
 {
-  constexpr int last = ExponentialSeries::Degree;
-  this->Term = this->Before = this->W;
-  this->Series = ExponentialSeries::Coefficients[0] * this->W;
-  for (int k = 1; k <= last; ++k)
-  {
-    this->StartFrom(this->Term);
-    this->Solve(dt, report, progress.Part((k - 1.0) / last, static_cast<double>(k) / last));
-    ForEach(this->Parallel, static_cast<Index>(this->Term.size()),
-      [&](Index i)
-      {
-        double& term = this->Term.data()[i];
-        double& before = this->Before.data()[i];
-        double& solution = this->Solution.data()[i];
-        const double next = ExponentialSeries::NextTerm(k, solution, term, before);
-        before = term;
-        term = solution = next;
-        this->Series.data()[i] +=
-          ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * next;
-      });
-  }
-  this->Solution = this->Series;
+  constexpr double all = ExponentialSeries::Degree;
+  ExponentialSeries::Apply(this->W, this->Series,
+    [&](int k, const Values& last, Values& y)
+    {
+      this->StartFrom(last);
+      this->Solution = last;
+      this->Solve(dt, report, progress.Part((k - 1.0) / all, k / all));
+      y = this->Solution;
+    });
 }
 
 StepReport TangentDiffusion::Advance(const ProgressMonitor& progress)

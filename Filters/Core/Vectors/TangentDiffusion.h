@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Models/LinearDiffusion.h"
+#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Vectors/VectorLaplacian.h"
 
 namespace SurfaceDiffusion
@@ -78,7 +79,8 @@ private:
   Vector Inertia; ///< diag(M), or of a steady state a small part of it
   SparseMatrix Matrix, MassDifference;
   Values B, Solution; ///< of a solve
-  Values Term, Before, Series; ///< of the scheme
+  Values Term; ///< of SDIRK2
+  ExponentialSeries::Work Series;
   Values Load; ///< of Dirichlet conditions, and their right-hand side
   bool Prepared = false;
 };
