@@ -204,10 +204,11 @@ double NoiseWidth::Solve(double product, const Vector& variances, double area) c
   {
     return 0.0;
   }
+  const double x = InvertSum(product, variances, this->Squares);
+  const double narrowest = x > 0.0 ? std::sqrt(Rate / x) : Infinity;
   if (!this->SubtractsMean)
   {
-    const double x = InvertSum(product, variances, this->Squares);
-    return x > 0.0 ? std::sqrt(Rate / x) : Infinity;
+    return narrowest;
   }
   const auto isAbove = [&](double width)
   {
@@ -216,21 +217,20 @@ double NoiseWidth::Solve(double product, const Vector& variances, double area) c
     const double taken = 0.5 * width * width / (HalfOfVariance * area); // with the mean
     return (expected - taken) / (1.0 - taken) > product;
   };
-  // It rises with the width until the mean takes half of the variance, or less on coarse surfaces.
+  // It rises with the width until the mean takes half of the variance, or less on coarse surfaces, and
+  // only lessens the correlation, so the width is not below the one without it.
   const double largest = std::sqrt(HalfOfVariance * area);
-  constexpr int count = 512;
-  const auto width = [&](int k) { return largest * std::pow(10.0, -6.0 + 6.0 * k / (count - 1)); };
-  int first = 0;
-  while (first < count && !isAbove(width(first)))
+  double low = 0.999 * narrowest;
+  double high = std::min(low, largest);
+  while (!isAbove(high))
   {
-    ++first;
+    if (high == largest)
+    {
+      return Infinity;
+    }
+    low = high;
+    high = std::min(1.02 * high, largest);
   }
-  if (first == count)
-  {
-    return Infinity;
-  }
-  double low = first > 0 ? width(first - 1) : 0.0;
-  double high = width(first);
   for (double middle = 0.5 * (low + high); low < middle && middle < high;
        middle = 0.5 * (low + high))
   {
