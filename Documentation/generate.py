@@ -46,7 +46,7 @@ FILTERS = [
     Filter("interpolate", "vtkSurfaceInterpolationFilter",
            ("Interpolation", "InterpolationField", "InterpolationRun")),
     Filter("harmonic_map", "vtkHarmonicMapFilter",
-           ("HarmonicMap", "HarmonicMapBehaviour", "HarmonicMapEnergy", "VertexUpdating")),
+           ("HarmonicMap", "HarmonicMapBehaviour", "HarmonicMapEnergy", "TangentMaps", "VertexUpdating")),
     Filter("denoise_mesh", "vtkSurfaceDenoisingFilter", ("SurfaceDenoising",)),
     Filter("turing_texture", "vtkTuringTextureFilter",
            ("ReactionDiffusion", "Kinetics", "CoarseStart")),

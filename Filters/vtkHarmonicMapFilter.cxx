@@ -73,6 +73,7 @@ void vtkHarmonicMapFilter::UsePaperScheme()
   this->SetConsistentReaction(false);
   this->SetProjectToSphere(true);
   this->SetLineField(false);
+  this->SetTangentToToNone();
   this->SetMoveVertices(false);
 }
 

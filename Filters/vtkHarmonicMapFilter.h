@@ -122,6 +122,25 @@ public:
    */
   SURFACEDIFFUSION_SWITCH(LineField);
 
+  enum TangentToType
+  {
+    TANGENT_TO_NONE = 0,
+    TANGENT_TO_SURFACE = 1
+  };
+
+  ///@{
+  /**
+   * What the vectors are tangent to. None (default): any unit vector. Surface: the part of three
+   * components in the tangent plane of the surface (N. Max, J. Graphics Tools 4(2), 1999) is normalised,
+   * and stays in that plane, for directions along the surface such as fibres. Vectors along the normal
+   * are missing. |grad u| is that in space, so that a field that follows a bend of the surface has the
+   * energy of the bend. MoveVertices must be off.
+   */
+  SURFACEDIFFUSION_CHOICE(TangentTo);
+  void SetTangentToToNone() { this->SetTangentTo(TANGENT_TO_NONE); }
+  void SetTangentToToSurface() { this->SetTangentTo(TANGENT_TO_SURFACE); }
+  ///@}
+
   ///@{
   /**
    * On (default): if the input array is the surface's normals, the result becomes the output's
@@ -168,7 +187,7 @@ public:
 
   /**
    * In addition to the superclass: Scheme ExplicitReaction, ConsistentReaction off, ProjectToSphere
-   * on, LineField and MoveVertices off. Exponent does not change.
+   * on, LineField and MoveVertices off, TangentTo None. Exponent does not change.
    */
   void UsePaperScheme() override;
 

@@ -5,6 +5,7 @@
 #include "Core/Models/Harmonic/UnitVectors.h"
 #include "Run/DataPreparation.h"
 #include "Run/ModelInputs.h"
+#include "Run/VectorSettings.h"
 
 #include <cmath>
 
@@ -53,6 +54,12 @@ void HarmonicMapSettings::Visit(SettingVisitor& visitor)
                    "Treat u and -u as equal, as for principal directions. The sign of the result "
                    "has no meaning." },
     this->LineField);
+  visitor.Choice(
+    { "TangentTo", "",
+      "What the vectors are tangent to. None: nothing, any unit vector is allowed. Surface: "
+      "three components, whose part in the tangent plane of the surface is normalised, and "
+      "stays in that plane. For directions along the surface, such as fibres." },
+    this->TangentTo, { "None", "Surface" });
   visitor.Switch(
     { "MoveVertices", "",
       "Move the points so that the triangles turn as the normals have turned: mesh denoising.",
@@ -65,6 +72,12 @@ void HarmonicMapSettings::CheckTogether(const FieldSummary* fields, Problems& pr
   this->DataSettings::CheckTogether(fields, problems);
   Require(this->Exponent == 2.0 || this->Beta != 0.0, Word::Setting("Beta"), this->Beta,
     "finite numbers above 0", problems);
+  const bool isTangent = this->TangentTo == SurfaceDiffusion::TangentTo::Surface;
+  const Sentence purpose = Sentence(Word::Setting("TangentTo"))
+    << " " << Word::Choice("TangentTo", this->TangentTo, "Surface");
+  Require(!isTangent || !this->MoveVertices, Word::Setting("MoveVertices"),
+    Word::SwitchNumber(true), Sentence(Word::SwitchNumber(false)) << " together with " << purpose,
+    problems);
   if (fields && fields->Data)
   {
     const int columns = fields->DataComponents;
@@ -73,6 +86,10 @@ void HarmonicMapSettings::CheckTogether(const FieldSummary* fields, Problems& pr
     if (this->MoveVertices && columns != 3)
     {
       problems.push_back(found << "3 with " << Word::Setting("MoveVertices"));
+    }
+    else if (isTangent && columns != 3)
+    {
+      problems.push_back(found << "3 with " << purpose);
     }
     else if (columns < 2)
     {
@@ -91,7 +108,9 @@ ModelTraits HarmonicMapSettings::DescribeModel() const
   traits.UsesFidelity = this->FidelityWeight > 0.0;
   traits.StateIsUnitVectors = true;
   traits.StateIsLines = this->LineField;
-  traits.CanBeDistributed = !this->MoveVertices;
+  const bool isTangent = this->TangentTo == SurfaceDiffusion::TangentTo::Surface;
+  traits.Vectors = isTangent ? VectorType::Tangent : VectorType::Components;
+  traits.CanBeDistributed = !this->MoveVertices && !isTangent;
   DescribeData(*this, traits);
   return traits;
 }
@@ -106,8 +125,43 @@ SolverTask HarmonicMapSettings::MakeTask(const ModelInputs& inputs, double timeS
   return task;
 }
 
+/// The normals of the surface if the vectors are tangent to it, whose data become so. If they are by
+/// themselves, and nothing keeps them there, the result says so.
+Values HarmonicMapSettings::PrepareTangents(ModelInputs& inputs, RunResult& result) const
+{
+  const bool isTangent = this->TangentTo == SurfaceDiffusion::TangentTo::Surface;
+  Values normals;
+  if (inputs.Data.Given.cols() != 3)
+  {
+    return normals;
+  }
+  const TangentPlanes planes(
+    inputs.Surface.SharedMesh(), VertexPositions(inputs.Surface), inputs.Parallel);
+  normals.resize(inputs.Data.Given.rows(), 3);
+  for (Index i = 0; i < static_cast<Index>(normals.rows()); ++i)
+  {
+    normals.row(i) = planes.Normal(i);
+  }
+  if (isTangent)
+  {
+    ProjectIntoPlanes(normals, inputs.Data.Given);
+    ProjectIntoPlanes(normals, inputs.Data.Start);
+    return normals;
+  }
+  const TangentShare share = MeasureTangents(planes, inputs.Data, inputs.Processes);
+  if (share.AreTangent())
+  {
+    result.WarnOnce(Sentence(Word::Array("InputArray"))
+      << " has vectors that lie in the surface, and may leave it (to keep them there, set "
+      << Word::Setting("TangentTo") << " to "
+      << Word::Choice("TangentTo", SurfaceDiffusion::TangentTo::Surface, "Surface") << ")");
+  }
+  return Values();
+}
+
 std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult& result) const
 {
+  Values normals = this->PrepareTangents(inputs, result);
   FillMissingUnitVectors(inputs.Surface.Mesh(), inputs.Data, this->LineField, this->InitialFill,
     this->RandomSeed, inputs.Ids);
   if (this->InitialFill == SurfaceDiffusion::InitialFill::Harmonic && !this->LineField)
@@ -115,6 +169,10 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
     const Values means = inputs.Data.Start;
     FillHarmonicallyIf(true, inputs, result);
     NormalizeFilled(inputs.Data, means);
+  }
+  if (normals.rows() > 0)
+  {
+    NormalizeFilledInPlanes(normals, inputs.Data);
   }
   if (inputs.Processes.Any((inputs.Data.Fixed && inputs.Data.Missing).any()))
   {
@@ -137,6 +195,7 @@ std::unique_ptr<Model> HarmonicMapSettings::Make(ModelInputs& inputs, RunResult&
   settings.ConsistentReaction = this->ConsistentReaction;
   settings.ProjectToSphere = this->ProjectToSphere;
   settings.LineField = this->LineField;
+  settings.Normals = std::move(normals);
   settings.LargestDiffusivity = fastest > 0.0 ? fastest : 1.0;
   settings.Limits.Tolerance = this->Tolerance;
   settings.Limits.MaximumNumberOfIterations = this->MaximumNumberOfIterations;

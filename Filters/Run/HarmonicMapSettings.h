@@ -9,6 +9,13 @@
 namespace SurfaceDiffusion
 {
 
+/// What unit vectors are tangent to.
+enum class TangentTo
+{
+  None,
+  Surface
+};
+
 /// The flow of p-harmonic maps into the unit sphere,
 /// u_t = div(|grad u|^(p-2) grad u) + u |grad u|^p + lambda chi (f - u), |u| = 1: (20), (21).
 struct HarmonicMapSettings : DataSettings
@@ -20,6 +27,7 @@ struct HarmonicMapSettings : DataSettings
   bool ConsistentReaction = false;
   bool ProjectToSphere = true;
   bool LineField = false;
+  SurfaceDiffusion::TangentTo TangentTo = SurfaceDiffusion::TangentTo::None;
   bool MoveVertices = false;
   int MaximumNumberOfRepetitions = 50; ///< of MinimizingMovement; no property
 
@@ -39,6 +47,7 @@ protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:
+  Values PrepareTangents(ModelInputs& inputs, RunResult& result) const;
   Points MovePoints(const RunState& state, VertexMotion& motion) const;
   SolverTask MakeTask(const ModelInputs& inputs, double timeStep) const;
 };

@@ -185,7 +185,8 @@ Values Run::Block::CellResult(Values given, bool keepDetail, const ParallelFor& 
   given = MakeCellResult(*this->Cells, this->Path->State(), given, keepDetail);
   if (this->IsInCellPlanes)
   {
-    ProjectIntoCells(*this->Surface, this->Cells->Transfer, given, parallel);
+    ProjectIntoCells(*this->Surface, this->Cells->Transfer, this->Cells->Model.StateIsUnitVectors,
+      given, parallel);
   }
   this->Decode(given, parallel);
   return given;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Run/VectorSettings.h"
 
+#include "Core/Models/Harmonic/UnitVectors.h"
 #include "Core/Operators/CellTransfer.h"
 #include "Run/ModelInputs.h"
 
@@ -28,6 +29,24 @@ bool AreCoordinates(const Surface& surface, const Values& values)
   const Eigen::RowVector3d offset = values.row(0) - points.row(0);
   const double size = (points.rowwise() - points.row(0)).cwiseAbs().maxCoeff();
   return ((values - points).rowwise() - offset).cwiseAbs().maxCoeff() <= 1e-6 * size;
+}
+
+void Count(
+  const Eigen::RowVector3d& value, const Eigen::Vector3d& normal, double area, TangentShare& share)
+{
+  const double length = value.norm();
+  if (length > 0.0 && std::isfinite(length))
+  {
+    share.Known += area;
+    share.Tangent += std::abs(value.dot(normal)) <= LargestSine * length ? area : 0.0;
+  }
+}
+
+TangentShare SumOver(const Reduction& processes, const TangentShare& share)
+{
+  std::array<double, 2> sums{ share.Known, share.Tangent };
+  processes.Sum(sums.data(), 2);
+  return { sums[0], sums[1] };
 }
 
 } // namespace
@@ -92,34 +111,36 @@ TangentShare MeasureTangents(const Surface& surface, const Fields& fields,
   if (values.cols() == 3 && values.rows() > 0 && !fields.DataAreBytes &&
     (fields.Data.OnCells || !AreCoordinates(surface, values)))
   {
-    const auto count =
-      [&](const Eigen::RowVector3d& value, const Eigen::Vector3d& normal, double area)
-    {
-      const double length = value.norm();
-      if (length > 0.0 && std::isfinite(length))
-      {
-        share.Known += area;
-        share.Tangent += std::abs(value.dot(normal)) <= LargestSine * length ? area : 0.0;
-      }
-    };
     const TangentPlanes planes(surface.SharedInputMesh(), VertexPositions(surface), parallel);
     for (Index i = 0; i < mesh.NumberOfVertices() && !fields.Data.OnCells; ++i)
     {
       if (!IsSet(fields.Missing, mesh.InputVertex()[i]))
       {
-        count(values.row(mesh.InputVertex()[i]), planes.Normal(i), mesh.ControlAreas()[i]);
+        Count(values.row(mesh.InputVertex()[i]), planes.Normal(i), mesh.ControlAreas()[i], share);
       }
     }
     for (Index t = 0; t < mesh.NumberOfTriangles() && fields.Data.OnCells; ++t)
     {
       const Index triangle = surface.InputTriangle(mesh.InputTriangle()[t]);
       const Index cell = fields.Cells[static_cast<std::size_t>(triangle)];
-      count(values.row(cell), planes.TriangleNormal(t), mesh.Shapes()[t].Area());
+      Count(values.row(cell), planes.TriangleNormal(t), mesh.Shapes()[t].Area(), share);
     }
   }
-  std::array<double, 2> sums{ share.Known, share.Tangent };
-  processes.Sum(sums.data(), 2);
-  return { sums[0], sums[1] };
+  return SumOver(processes, share);
+}
+
+TangentShare MeasureTangents(
+  const TangentPlanes& planes, const PointData& data, const Reduction& processes)
+{
+  TangentShare share;
+  for (Index i = 0; i < planes.Mesh().NumberOfVertices(); ++i)
+  {
+    if (!data.Missing[i])
+    {
+      Count(data.Given.row(i), planes.Normal(i), planes.Mesh().ControlAreas()[i], share);
+    }
+  }
+  return SumOver(processes, share);
 }
 
 void WarnOfVectors(const Word& name, const TangentShare& share, bool areTangent, RunResult& result)
@@ -145,8 +166,8 @@ void WarnOfVectors(const Word& name, const TangentShare& share, bool areTangent,
   }
 }
 
-void ProjectIntoCells(
-  const Surface& surface, const CellTransfer& cells, Values& vectors, const ParallelFor& parallel)
+void ProjectIntoCells(const Surface& surface, const CellTransfer& cells, bool areUnitVectors,
+  Values& vectors, const ParallelFor& parallel)
 {
   const Points positions = VertexPositions(surface);
   ForEach(parallel, cells.NumberOfCells(),
@@ -178,6 +199,10 @@ void ProjectIntoCells(
       {
         auto vector = vectors.row(c).segment<3>(k);
         vector -= vector.dot(normal.transpose()) * normal.transpose();
+        if (areUnitVectors)
+        {
+          Normalize(vector);
+        }
       }
     });
 }

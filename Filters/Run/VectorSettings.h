@@ -48,11 +48,15 @@ struct TangentShare
 TangentShare MeasureTangents(const Surface& surface, const Fields& fields,
   const Reduction& processes, const ParallelFor& parallel);
 
+/// Of the known data of vertices. Collective.
+TangentShare MeasureTangents(
+  const TangentPlanes& planes, const PointData& data, const Reduction& processes);
+
 /// Says that VectorType Automatic took the data for tangent vectors, or that they are partly.
 void WarnOfVectors(const Word& name, const TangentShare& share, bool areTangent, RunResult& result);
 
-/// Of vectors at cells the parts in the planes of the cells.
-void ProjectIntoCells(
-  const Surface& surface, const CellTransfer& cells, Values& vectors, const ParallelFor& parallel);
+/// Of vectors at cells the parts in the planes of the cells, of length 1 if they are unit vectors.
+void ProjectIntoCells(const Surface& surface, const CellTransfer& cells, bool areUnitVectors,
+  Values& vectors, const ParallelFor& parallel);
 
 } // namespace SurfaceDiffusion

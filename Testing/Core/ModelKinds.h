@@ -282,6 +282,17 @@ inline std::vector<ModelKind> AllModelKinds()
         s.Solver = SolverMethod::Multigrid;
       },
       Content::UnitVectors),
+    MakeKind<Harmonic>(
+      "HarmonicTangent", 2, [](Harmonic& s) { s.TangentTo = TangentTo::Surface; },
+      Content::UnitVectors, Exemption::Numbering),
+    MakeKind<Harmonic>(
+      "HarmonicTangentLinesOnCells", 2,
+      [](Harmonic& s)
+      {
+        s.TangentTo = TangentTo::Surface;
+        s.LineField = true;
+      },
+      Content::UnitVectorsOnCells, Exemption::Numbering),
     MakeKind<Harmonic>("HarmonicOnCells", 2, {}, Content::UnitVectorsOnCells),
 
     MakeKind<Shah>("MumfordShah", 40, {}, Content::Scalars, Exemption::Energy),

@@ -216,6 +216,7 @@ class SameBits(unittest.TestCase):
             ("harmonic_map", {}, {"MoveVertices": True}),
             ("harmonic_map", {"vectors": self.normals}, {"Exponent": 2.0}),
             ("harmonic_map", {"vectors": self.normals.astype(np.float32)}, {"LineField": True}),
+            ("harmonic_map", {"vectors": self.normals[:, [1, 2, 0]]}, {"TangentTo": "Surface"}),
             ("harmonic_map", {"vectors": colours[:, :3]}, {}),
             ("denoise_mesh", {"fixed": self.mask}, {}),
             ("denoise_mesh", {}, {"NoiseLevel": 0.01, "SurfaceType": "CAD"}),

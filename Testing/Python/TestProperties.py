@@ -82,7 +82,7 @@ DEFAULTS = {
     "vtkHarmonicMapFilter": {
         **DATA, "TimeIntegrator": "FirstOrder", "TimeStep": 0.1, "NumberOfTimeSteps": 3,
         "InitialFill": "Mean", "Exponent": 1.0, "Beta": 1e-6, "Scheme": "TangentPlane",
-        "ConsistentReaction": False, "ProjectToSphere": True, "LineField": False,
+        "ConsistentReaction": False, "ProjectToSphere": True, "LineField": False, "TangentTo": "None",
         "UseAsNormals": True, "MoveVertices": False},
     "vtkMumfordShahFilter": {
         **DATA, "FidelityWeight": 1.0, "NumberOfTimeSteps": 1000, "Tolerance": 0.1,
@@ -146,6 +146,7 @@ WORDS = {
     "MassMatrix": ("Automatic", "Lumped", "Mixed"),
     "VectorType": ("Automatic", "Components", "Tangent"),
     "VectorLaplacian": ("Connection", "Hodge", "Viscous"), "NormalPart": ("Drop", "Keep", "Diffuse"),
+    "TangentTo": ("None", "Surface"),
     "Solver": ("Automatic", "Direct", "ConjugateGradient", "Multigrid"),
     "OutputPrecision": ("Single", "Double", "Input"), "EdgeFunction": EDGE_FUNCTIONS,
     "AcrossEdgeFunction": ("Same", *EDGE_FUNCTIONS), "ChannelCoupling": ("PerChannel", "Joint"),

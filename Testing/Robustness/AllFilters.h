@@ -312,6 +312,12 @@ inline std::vector<FilterKind> AllFilters()
         f->LineFieldOn();
         f->UseAsNormalsOff();
       }),
+    MakeKind<Harmonic>("HarmonicTangent", "aroundHarmonic", 2,
+      [](Harmonic* f)
+      {
+        SetInputArray(f, 0, "around");
+        f->SetTangentToToSurface();
+      }),
     MakeKind<Harmonic>("HarmonicMinimizing", "NormalsHarmonic", 1,
       [](Harmonic* f) { f->SetSchemeToMinimizingMovement(); }),
     MakeKind<Shah>("MumfordShah", "fMumfordShah", 4),

@@ -370,6 +370,7 @@ inline List OfHarmonicMap()
     RANDOM_PROPERTY(F, ConsistentReaction, dice.Flip()),
     RANDOM_PROPERTY(F, ProjectToSphere, dice.Flip()),
     RANDOM_PROPERTY(F, LineField, dice.Flip()),
+    RANDOM_PROPERTY(F, TangentTo, Choice(dice, 2)),
     RANDOM_PROPERTY(F, UseAsNormals, dice.Flip()),
     RANDOM_PROPERTY(F, MoveVertices, dice.Flip()),
   };

@@ -28,6 +28,7 @@ struct ProjectedSystem : MatrixSystem
 
   const Values& U;
   const Flags& Fixed;
+  const Values* Normals;
   LinearSolver* Preconditioner;
 
   bool HasPreconditioner() const { return this->Preconditioner != nullptr; }
@@ -49,6 +50,11 @@ struct ProjectedSystem : MatrixSystem
       return;
     }
     x -= (x.dot(u) / u.squaredNorm()) * u;
+    if (this->Normals)
+    {
+      const auto normal = Row<K>(&(*this->Normals)(i, 0), columns);
+      x -= x.dot(normal) * normal;
+    }
   }
 };
 
@@ -85,7 +91,7 @@ SolveReport TangentSolver::SolveColumns(const TangentSystem& system, Values& x,
   ForEach(this->Parallel, n, [&](Index i) { this->InverseDiagonal[i] = DiagonalEntry(matrix, i); });
   reduction.Accumulate(this->InverseDiagonal);
   const ProjectedSystem projected{ { matrix, this->InverseDiagonal, reduction }, system.U,
-    system.Fixed, preconditioner };
+    system.Fixed, system.Normals, preconditioner };
 
   const double scale = reduction.SumOverVertices(this->Parallel, n,
     [&](Index i)

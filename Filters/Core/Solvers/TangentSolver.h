@@ -20,6 +20,8 @@ struct TangentSystem
   const Vector& Inertia; ///< the part of diag(A) that multiplies u itself in a time step
   /// Matrix, B and Inertia are accumulated, U is consistent.
   const SurfaceDiffusion::Reduction& Reduction = SurfaceDiffusion::Reduction::Serial();
+  /// n x m unit vectors orthogonal to the rows of U, to which the rows of x are orthogonal, too; or null.
+  const Values* Normals = nullptr;
 };
 
 /// Solves P A P x = P b by conjugate gradients from x = 0, as one system of all columns, which P

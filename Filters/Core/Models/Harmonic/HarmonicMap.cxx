@@ -109,19 +109,34 @@ double HarmonicMap::Freeze()
   return mesh.GetReduction().Sum(gradientEnergy + this->Fit.Energy(mesh, this->U, this->Parallel));
 }
 
+void HarmonicMap::ProjectToPlane(Index i)
+{
+  const Values& normals = this->Options.Normals;
+  if (normals.rows() > 0)
+  {
+    this->U.row(i) -= this->U.row(i).dot(normals.row(i)) * normals.row(i);
+  }
+}
+
 void HarmonicMap::ProjectToSphere()
 {
-  if (this->Options.ProjectToSphere)
-  {
-    ForEach(this->Parallel, this->Assembly->Mesh().NumberOfVertices(),
-      [&](Index i)
+  ForEach(this->Parallel, this->Assembly->Mesh().NumberOfVertices(),
+    [&](Index i)
+    {
+      if (this->Data.Fixed[i])
       {
-        if (!this->Data.Fixed[i] && !Normalize(this->U.row(i)))
-        {
-          this->U.row(i) = this->Previous.row(i); // its length is zero
-        }
-      });
-  }
+        return;
+      }
+      this->ProjectToPlane(i);
+      if (this->Options.ProjectToSphere && !Normalize(this->U.row(i)))
+      {
+        this->U.row(i) = this->Previous.row(i); // its length is zero
+      }
+      else if (this->Options.ProjectToSphere)
+      {
+        this->ProjectToPlane(i); // of the round-off of a vector that was short
+      }
+    });
 }
 
 void HarmonicMap::Copy(const Values& from, Values& to) const
@@ -251,7 +266,8 @@ double HarmonicMap::Descend(double objective, StepReport& report, const Progress
       damped = share;
     }
     const TangentSystem tangent{ this->System.GetMatrix(), this->Previous, this->Data.Fixed,
-      this->RightHandSide, this->Diagonal, mesh.GetReduction() };
+      this->RightHandSide, this->Diagonal, mesh.GetReduction(),
+      this->Options.Normals.rows() > 0 ? &this->Options.Normals : nullptr };
     const SolveReport solve = this->Tangent.Solve(
       this->System, tangent, this->Step, progress.Part(done, done + 0.5 * (1.0 - done)));
     done += 0.5 * (1.0 - done);

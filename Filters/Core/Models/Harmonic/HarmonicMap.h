@@ -57,6 +57,9 @@ namespace SurfaceDiffusion
 /// Line fields take signs in each triangle (HarmonicEnergy) and the nearer one of f and -f. A
 /// minimum over signs lies below the energy of the signs chosen at the old u, so that the proof
 /// holds.
+///
+/// With normals of the surface each u_i and x_i is orthogonal to the normal n_i of the surface: a tangent field
+/// with |grad u|^2 in space. The proof is the same: u_i + x_i and f_i lie in the plane.
 class HarmonicMap : public StateModel
 {
 public:
@@ -79,6 +82,7 @@ public:
     bool ConsistentReaction = false; ///< of ExplicitReaction
     bool ProjectToSphere = true; ///< normalise after each step
     bool LineField = false;
+    Values Normals; ///< n x 3 of the surface, orthogonal to u, f and fixed values; no row: any u
     int MaximumNumberOfRepetitions = 50; ///< per step of MinimizingMovement
     double LargestDiffusivity = 1.0; ///< d of anisotropic coefficients
     Preconditioner Method = Preconditioner::Automatic;
@@ -113,6 +117,7 @@ private:
   void MinimizingMovementStep(StepReport& report, const ProgressMonitor& progress);
   double Descend(double objective, StepReport& report, const ProgressMonitor& progress);
   void FindDamping();
+  void ProjectToPlane(Index i);
   void ProjectToSphere();
   double Objective() const;
   double ProcessEnergy() const;

@@ -5,6 +5,7 @@
 #include "Core/Surface/AllComponents.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include <limits>
 #include <vector>
@@ -196,6 +197,39 @@ void NormalizeFilled(PointData& data, const Values& instead)
       data.Start.row(i) = instead.row(i);
     }
   }
+}
+
+void ProjectIntoPlanes(const Values& normals, Values& vectors)
+{
+  constexpr double roundOff = 1e-12;
+  for (Index i = 0; i < static_cast<Index>(vectors.rows()); ++i)
+  {
+    const Eigen::RowVectorXd whole = vectors.row(i);
+    vectors.row(i) -= whole.dot(normals.row(i)) * normals.row(i);
+    if (vectors.row(i).norm() <= roundOff * whole.norm())
+    {
+      vectors.row(i).setZero();
+    }
+  }
+}
+
+void NormalizeFilledInPlanes(const Values& normals, PointData& data)
+{
+  Values any = data.Start;
+  for (Index i = 0; i < static_cast<Index>(any.rows()); ++i)
+  {
+    any.row(i) = Eigen::Vector3d(normals.row(i)).unitOrthogonal();
+  }
+  Values parts = data.Start;
+  ProjectIntoPlanes(normals, parts);
+  for (Index i = 0; i < static_cast<Index>(any.rows()); ++i)
+  {
+    if (data.Missing[i])
+    {
+      data.Start.row(i) = parts.row(i);
+    }
+  }
+  NormalizeFilled(data, any);
 }
 
 } // namespace SurfaceDiffusion

@@ -43,6 +43,9 @@ bool Normalize(Row&& row)
 void FillMissingUnitVectors(const TriangleMesh& mesh, PointData& data, bool lineField,
   InitialFill fill, std::int64_t seed, const std::vector<std::int64_t>& ids);
 
+/// Of vectors the parts orthogonal to the normals, each of n x 3: 0 where there is none but round-off.
+void ProjectIntoPlanes(const Values& normals, Values& vectors);
+
 /// Give every vertex that is not known the direction of the sum of the vectors of its neighbours,
 /// ring by ring from the known ones on; e_1 if nothing is known or neighbours cancel exactly. All
 /// become known. (The sum of lines depends on its order: only the serial reduction takes them.)
@@ -51,5 +54,9 @@ void SpreadUnitVectors(const TriangleMesh& mesh, Values& u, Flags& known, bool l
 /// Normalise data.Start at the missing vertices; vectors without a direction are replaced by those
 /// of `instead`.
 void NormalizeFilled(PointData& data, const Values& instead);
+
+/// Bring data.Start at the missing vertices into the planes orthogonal to the normals, where a vector
+/// along the normal becomes any.
+void NormalizeFilledInPlanes(const Values& normals, PointData& data);
 
 } // namespace SurfaceDiffusion
