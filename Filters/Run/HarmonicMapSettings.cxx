@@ -142,19 +142,34 @@ Values HarmonicMapSettings::PrepareTangents(ModelInputs& inputs, RunResult& resu
   {
     normals.row(i) = planes.Normal(i);
   }
+  const TangentShare share = MeasureTangents(planes, inputs.Data, inputs.Processes);
+  Sentence text(Word::Array("InputArray"));
   if (isTangent)
   {
+    if (share.AreNormal())
+    {
+      result.WarnOnce(text << " has the normals of the surface, which have no direction in its "
+                              "tangent plane (choose directions along the surface, or set "
+                           << Word::Setting("TangentTo") << " to "
+                           << Word::Choice("TangentTo", SurfaceDiffusion::TangentTo::None, "None")
+                           << ")");
+    }
     ProjectIntoPlanes(normals, inputs.Data.Given);
     ProjectIntoPlanes(normals, inputs.Data.Start);
+    for (Index i = 0; i < static_cast<Index>(normals.rows()); ++i)
+    {
+      // Nothing is held where a vector along the normal is missing.
+      inputs.Data.Fixed[i] = inputs.Data.Fixed[i] && !inputs.Data.Given.row(i).isZero(0.0);
+    }
     return normals;
   }
-  const TangentShare share = MeasureTangents(planes, inputs.Data, inputs.Processes);
   if (share.AreTangent())
   {
-    result.WarnOnce(Sentence(Word::Array("InputArray"))
-      << " has vectors that lie in the surface, and may leave it (to keep them there, set "
-      << Word::Setting("TangentTo") << " to "
-      << Word::Choice("TangentTo", SurfaceDiffusion::TangentTo::Surface, "Surface") << ")");
+    result.WarnOnce(
+      text << " has vectors that lie in the surface, and may leave it (to keep them "
+              "there, set "
+           << Word::Setting("TangentTo") << " to "
+           << Word::Choice("TangentTo", SurfaceDiffusion::TangentTo::Surface, "Surface") << ")");
   }
   return Values();
 }

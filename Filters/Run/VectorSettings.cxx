@@ -38,15 +38,17 @@ void Count(
   if (length > 0.0 && std::isfinite(length))
   {
     share.Known += area;
-    share.Tangent += std::abs(value.dot(normal)) <= LargestSine * length ? area : 0.0;
+    const double alongNormal = std::abs(value.dot(normal)) / length;
+    share.Tangent += alongNormal <= LargestSine ? area : 0.0;
+    share.Normal += alongNormal >= std::sqrt(1.0 - LargestSine * LargestSine) ? area : 0.0;
   }
 }
 
 TangentShare SumOver(const Reduction& processes, const TangentShare& share)
 {
-  std::array<double, 2> sums{ share.Known, share.Tangent };
-  processes.Sum(sums.data(), 2);
-  return { sums[0], sums[1] };
+  std::array<double, 3> sums{ share.Known, share.Tangent, share.Normal };
+  processes.Sum(sums.data(), 3);
+  return { sums[0], sums[1], sums[2] };
 }
 
 } // namespace

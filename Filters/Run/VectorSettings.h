@@ -29,14 +29,16 @@ struct VectorSettings
 /// none if the data are the coordinates.
 struct TangentShare
 {
-  double Known = 0.0, Tangent = 0.0;
+  double Known = 0.0, Tangent = 0.0, Normal = 0.0; ///< Normal: within 5 degrees of the normal
 
   void Merge(const TangentShare& other)
   {
     this->Known += other.Known;
     this->Tangent += other.Tangent;
+    this->Normal += other.Normal;
   }
   bool AreTangent() const { return this->Known > 0.0 && this->Tangent >= 0.9 * this->Known; }
+  bool AreNormal() const { return this->Known > 0.0 && this->Normal >= 0.9 * this->Known; }
   /// Too many for chance, and too few for tangent vectors.
   bool IsPartly() const
   {

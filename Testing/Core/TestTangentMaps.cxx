@@ -176,6 +176,10 @@ TEST(TangentMaps, AreAskedForWhereVectorsWouldLeaveTheSurface)
     << solution.Warnings[0];
   Values normals = s.Vertices;
   EXPECT_TRUE(HarmonicMapFlow(s.Vertices, s.Faces, normals, settings).Warnings.empty());
+  settings.TangentTo = TangentTo::Surface;
+  const Solution none = HarmonicMapFlow(s.Vertices, s.Faces, normals, settings);
+  ASSERT_EQ(none.Warnings.size(), 1u);
+  EXPECT_NE(none.Warnings[0].find("has the normals"), std::string::npos) << none.Warnings[0];
 }
 
 // Vectors along the normal, and missing ones, become vectors of the plane.
