@@ -46,7 +46,8 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
          << Word::Setting("NoiseLevel") << ")";
     warnings.push_back({ text, this->SurfaceVersion });
   }
-  else if (this->Found.Type == SurfaceType::Automatic && this->Found.MaximumDisplacement == 0.0)
+  else if (this->Found.Type == SurfaceType::Automatic && this->Found.MaximumDisplacement == 0.0 &&
+    this->Found.Relief == 0.0)
   {
     Sentence text("no noise was found, so that no point moves (to remove some, set ");
     text << Word::Setting("NoiseLevel") << ")";
@@ -56,6 +57,15 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
       text << " is " << this->Found.NoiseLevel
            << ", less than 1e-4 mean edge lengths, so that no point moves";
     }
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
+  if (this->Found.Relief > 0.0)
+  {
+    Sentence text;
+    text << "a part varies by " << this->Found.Relief << " over lengths of "
+         << this->Found.ReliefLength
+         << ", which is correlated noise or relief, and stays (to remove it, set "
+         << Word::Setting("NoiseLevel") << " to " << this->Found.Relief << ")";
     warnings.push_back({ text, this->SurfaceVersion });
   }
   this->AppendLongEdges(warnings);
@@ -134,6 +144,8 @@ void DenoisingRun::Update(const BlockInput& input, Settings& given, const Progre
     mesh, points, fixed, core, &this->Found, this->Parallel, progress.Part(0.1, 1.0));
   this->Found.NoiseLevel *= unit;
   this->Found.CorrelationLength *= unit;
+  this->Found.Relief *= unit;
+  this->Found.ReliefLength *= unit;
   this->Found.MeanDisplacement *= unit;
   this->Found.MaximumDisplacement *= unit;
   Points all = surface.Points();

@@ -17,11 +17,12 @@ namespace
 
 /// A few steps from `f` at time steps over eight decades, 1e-4 to 1e4 of h^p.
 void ExpectFallingEnergy(std::shared_ptr<const Assembler> assembler, const PointData& data,
-  double exponent, MapScheme scheme, bool lineField = false, double fidelity = 0.0)
+  double exponent, MapScheme scheme, bool lineField = false, double fidelity = 0.0,
+  double factor = 10.0)
 {
   const TriangleMesh& mesh = assembler->Mesh();
   const double h = MeanEdge(mesh);
-  for (double step = 1e-4; step < 2e4; step *= 10.0)
+  for (double step = 1e-4; step < 2e4; step *= factor)
   {
     HarmonicMap::Settings settings;
     settings.Exponent = exponent;
@@ -181,8 +182,10 @@ TEST_P(HarmonicMapEnergyOnRealMesh, NeverGrows)
   }
   const auto assembler = MakeAssembler(ReadMeshFile(GetParam()));
   const auto data = PointData::FromValues(RandomUnitVectors(assembler->Mesh(), 3));
-  ExpectFallingEnergy(assembler, data, 1.0, MapScheme::TangentPlane);
-  ExpectFallingEnergy(assembler, data, 2.0, MapScheme::TangentPlane);
+  for (const double exponent : { 1.0, 2.0 })
+  {
+    ExpectFallingEnergy(assembler, data, exponent, MapScheme::TangentPlane, false, 0.0, 100.0);
+  }
 }
 
 // Of libcgal-demo's, those with the smallest angles, from 7e-6 to 0.07 degrees; the largest are

@@ -279,6 +279,40 @@ TEST(SurfaceDenoising, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
   }
 }
 
+/// Where curvature and edges of the shape add to the deviations from quadrics.
+TEST(SurfaceDenoising, CorrelatedNoiseIsFoundBesideTheShape)
+{
+  for (const Surface& surface : { LBlock(32), Torus(120, 60) })
+  {
+    const Surface noisy = WithCorrelatedNoise(surface, 0.3, 2.0);
+    DenoisingReport report;
+    const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
+    EXPECT_NEAR(report.NoiseLevel / MeanEdge(TriangleMesh(noisy.Vertices, noisy.Faces)), 0.3, 0.1);
+    EXPECT_LT(MeanAngle(result, surface), 0.5 * MeanAngle(noisy, surface));
+    EXPECT_EQ(report.Relief, 0.0);
+  }
+}
+
+/// Noise is everywhere the same, and relief is not.
+TEST(SurfaceDenoising, ReliefThatResemblesNoiseStaysAndIsReported)
+{
+  const Surface surface = Icosphere(5);
+  Surface relief = WithCorrelatedNoise(surface, 0.2, 2.0);
+  for (Index i = 0; i < surface.NumberOfVertices(); ++i)
+  {
+    const double z = surface.Vertices(i, 2);
+    relief.Vertices.row(i) = surface.Vertices.row(i) +
+      std::exp(1.5 * z) * (relief.Vertices.row(i) - surface.Vertices.row(i));
+  }
+  DenoisingReport report;
+  const Surface result = Denoised(relief, DenoisingSettings(), {}, &report);
+  EXPECT_EQ(result.Vertices, relief.Vertices);
+  EXPECT_EQ(report.NoiseLevel, 0.0);
+  const double h = MeanEdge(TriangleMesh(relief.Vertices, relief.Faces));
+  EXPECT_NEAR(report.Relief / h, 0.2, 0.1);
+  EXPECT_NEAR(report.ReliefLength / h, 2.0, 1.0);
+}
+
 /// It resembles details, below the level that is given.
 TEST(SurfaceDenoising, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
 {

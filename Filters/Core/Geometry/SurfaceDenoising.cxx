@@ -33,6 +33,9 @@ constexpr double FarDisplacement = 10.0;
 /// are cut in two. Steps of depth cameras leave up to a fifth.
 constexpr double FlatDistance = 0.01;
 constexpr double LargestFlatShare = 0.25;
+/// Of DisplacementsAreNoise().
+constexpr double SmallestTail = 0.9;
+constexpr double LargestTail = 1.15;
 
 /// The standard deviation of the noise along the normals: that of `correlated` noise if some was found,
 /// otherwise that of white noise. NaN if too few vertices are on smooth faces for an estimate.
@@ -77,6 +80,26 @@ bool HasFlatFaces(const TriangleMesh& mesh, const Points& points, double noise)
     }
   }
   return flat > LargestFlatShare * inner;
+}
+
+/// Whether the displacements along the normals of the moved surface are normally distributed.
+bool DisplacementsAreNoise(const TriangleMesh& mesh, const Points& from, const Points& to)
+{
+  std::vector<double> distances;
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    Eigen::RowVector3d normal = Eigen::RowVector3d::Zero();
+    for (Index k = mesh.VertexCornersBegin()[i]; k < mesh.VertexCornersBegin()[i + 1]; ++k)
+    {
+      const Index corner = mesh.VertexCorners()[k];
+      const Eigen::RowVector3d a = to.row(mesh.OtherCorner(corner, 1)) - to.row(i);
+      const Eigen::RowVector3d b = to.row(mesh.OtherCorner(corner, 2)) - to.row(i);
+      normal += a.cross(b);
+    }
+    distances.push_back(std::abs((to.row(i) - from.row(i)).dot(normal.stableNormalized())));
+  }
+  const double tail = TailOfNormal(distances);
+  return SmallestTail < tail && tail < LargestTail;
 }
 
 /// The enclosed volume of each connected component; 0 unless it is closed and consistently oriented.
@@ -125,6 +148,7 @@ struct DenoisedPart
 {
   double NoiseLevel = 0.0;
   double CorrelationLength = 0.0;
+  double Relief = 0.0, ReliefLength = 0.0;
   SurfaceType Type = SurfaceType::Automatic;
   bool IsCoarse = false; ///< its noise cannot be distinguished from its shape
   double VolumeChange = 0.0; ///< over the volume
@@ -211,6 +235,13 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   const SurfaceType type = isCorrelated ? SurfaceType::CAD : settings.Type;
   const DenoisedSurface denoised = DenoiseWithScheme(
     mesh, points, isFixed, noise, scheme, type, parallel, progress.Part(0.05, 1.0));
+  if (correlated.MayBeRelief && !DisplacementsAreNoise(mesh, points, denoised.Moved))
+  {
+    result.NoiseLevel = 0.0;
+    result.Relief = noise * unit;
+    result.ReliefLength = correlated.Length * unit;
+    return result;
+  }
   result.Type = settings.Type == SurfaceType::Automatic ? denoised.Type : settings.Type;
   result.CorrelationLength = correlated.Length * unit;
   Points places = Points::Zero(rows, 3);
@@ -294,6 +325,11 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
       ? denoised.VolumeChange
       : found.VolumeChange;
     found.CorrelationLength = std::max(found.CorrelationLength, denoised.CorrelationLength);
+    if (denoised.Relief > found.Relief)
+    {
+      found.Relief = denoised.Relief;
+      found.ReliefLength = denoised.ReliefLength;
+    }
     type.Add(denoised.Type);
     const double level = denoised.NoiseLevel;
     for (std::size_t i = 0; i < size; ++i)

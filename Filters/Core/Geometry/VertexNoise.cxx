@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -45,6 +46,10 @@ constexpr double SmallestCorrelated = 0.1; ///< in h
 constexpr double LargestCorrelated = 1.0; ///< in h
 constexpr double RadiusOfLength =
   3.0; ///< at which half of the variance is reached, over the length
+/// Of FitCorrelation(): how far sigma_r^2 is explained by the noise, and by all terms.
+constexpr double SmallestShare = 0.7;
+constexpr double LargestMisfit = 0.6;
+constexpr double LargestUncertain = 0.5; ///< level that may be relief, in h
 
 using Quadric = Eigen::Matrix<double, 6, 1>;
 
@@ -224,6 +229,54 @@ std::vector<Deviation> MeasureDeviations(const TriangleMesh& mesh, const Points&
   return deviations;
 }
 
+/// f of EstimateCorrelatedNoise().
+double ShareOfLevel(double rings)
+{
+  return std::pow(1.0 + std::pow(4.1 / rings, 2.83), -1.06);
+}
+
+/// The noise that may explain sigma_r, by the fit that EstimateCorrelatedNoise() describes.
+CorrelatedNoise FitCorrelation(
+  const std::vector<int>& rings, const std::vector<Deviation>& deviations, double h)
+{
+  constexpr Eigen::Index count = 6; // without 16 rings, of which the shape is too large a part
+  using Terms = Eigen::Matrix<double, count, 4>;
+  double best = LargestMisfit;
+  CorrelatedNoise found;
+  for (double s = 0.7; s < 8.0; s *= 1.04)
+  {
+    Terms terms; // over sigma_r^2
+    for (Eigen::Index k = 0; k < count; ++k)
+    {
+      const double r = rings[static_cast<std::size_t>(k)];
+      const double sigma = std::max(deviations[static_cast<std::size_t>(k)].Sigma / h, 1e-5);
+      const double square = r * r / 144.0;
+      terms.row(k) << std::pow(ShareOfLevel(r / s), 2), std::pow(square, 4), std::pow(square, 3),
+        1.0;
+      terms.row(k) /= sigma * sigma;
+    }
+    for (unsigned others = 0; others < 8; ++others) // which of the other terms there are
+    {
+      Terms chosen = terms;
+      for (Eigen::Index j = 0; j < 3; ++j)
+      {
+        chosen.col(j + 1) *= (others >> j) & 1U;
+      }
+      const Eigen::Vector4d factors =
+        chosen.completeOrthogonalDecomposition().solve(Eigen::Matrix<double, count, 1>::Ones());
+      const double misfit = ((chosen * factors).array() - 1.0).matrix().norm();
+      if (misfit < best && factors.minCoeff() >= 0.0 &&
+        (factors[0] * terms.col(0).head<5>()).minCoeff() >= SmallestShare)
+      {
+        best = misfit;
+        found = { std::sqrt(factors[0]) * h, std::sqrt(2.0) * s * h, true };
+      }
+    }
+  }
+  const bool isInRange = found.Level > SmallestCorrelated * h && found.Level < LargestUncertain * h;
+  return isInRange ? found : CorrelatedNoise();
+}
+
 } // namespace
 
 double QuantileOf(std::vector<double>& values, double fraction)
@@ -236,6 +289,13 @@ double QuantileOf(std::vector<double>& values, double fraction)
   const auto quantile = values.begin() + static_cast<std::ptrdiff_t>(place);
   std::nth_element(values.begin(), quantile, values.end());
   return *quantile;
+}
+
+double TailOfNormal(std::vector<double>& values)
+{
+  const double tail = QuantileOf(values, TailFraction) / TailQuantile;
+  const double usual = QuantileOf(values, NoiseFraction) / NoiseQuantile;
+  return usual > 0.0 ? tail / usual : std::numeric_limits<double>::infinity();
 }
 
 double EstimateVertexNoise(
@@ -286,7 +346,8 @@ CorrelatedNoise EstimateCorrelatedNoise(
   const bool reachesLevel = given > 0.0 && growth > LeastGrowthToLevel;
   if (!hasLevel && !reachesLevel)
   {
-    return CorrelatedNoise();
+    return given > 0.0 || growth <= LeastGrowth || !hasTails ? CorrelatedNoise()
+                                                             : FitCorrelation(rings, deviations, h);
   }
   const double level = given > 0.0 ? given : last;
   std::size_t k = 1;
@@ -300,7 +361,7 @@ CorrelatedNoise EstimateCorrelatedNoise(
   const double share =
     above > below ? std::clamp((0.5 * level * level - below) / (above - below), 0.0, 1.0) : 1.0;
   const double radius = rings[k - 1] + share * (rings[k] - rings[k - 1]);
-  return { level, radius * h / RadiusOfLength };
+  return { level, radius * h / RadiusOfLength, false };
 }
 
 } // namespace SurfaceDiffusion

@@ -12,6 +12,10 @@ namespace SurfaceDiffusion
 /// The value below which this fraction of them, below 1, is; 0 without values. Reorders them.
 double QuantileOf(std::vector<double>& values, double fraction);
 
+/// The deviation of normally distributed numbers whose absolute values these are by their 0.95 quantile,
+/// over that by their 0.3 quantile; infinite if the latter is 0. Reorders them.
+double TailOfNormal(std::vector<double>& values);
+
 /// An estimate of the noise of the vertices of a surface: the standard deviation of their
 /// displacement along the normal, in the unit of the points.
 ///
@@ -44,6 +48,8 @@ struct CorrelatedNoise
 {
   double Level = 0.0; ///< the standard deviation along the normal
   double Length = 0.0; ///< over which it is correlated
+  /// Relief may have the same sigma_r: noise has displacements that are normally distributed, too.
+  bool MayBeRelief = false;
 };
 
 /// Find correlated noise by the growth of sigma_r, the deviation of vertices from a quadric through
@@ -60,6 +66,15 @@ struct CorrelatedNoise
 /// have 0.3 to 0.7; sums of waves in several directions and waves with cusps may have 1, and
 /// resemble noise. The level is sigma_16, and 3 L the radius at which sigma_r^2 is half of that of
 /// the level. Noise with L > 3 h does not reach its level within sixteen rings and is not found.
+///
+/// If this does not hold since the shape adds to sigma_r before the noise has its level, the sum
+///
+///   sigma_r^2 = S^2 f(r h/s)^2 + a r^8 + b r^6 + c,  f(x) = (1 + (4.1/x)^2.83)^(-1.06),
+///
+/// is fitted up to twelve rings, without negative terms and with least relative errors. The powers are those of
+/// curved surfaces, and of edges. f is measured on planes: S is the
+/// level, and s = L/sqrt(2) the deviation of the kernel that correlates the noise. It may be noise, or
+/// relief, if its term is 0.7 of sigma_r^2 and more up to eight rings, and S is between 0.1 h and h/2.
 ///
 /// given: the level, if it is known, otherwise 0. Then noise of these surfaces is correlated, too,
 /// if sigma_2^2 is less than half of its square and sigma_4 > 1.8 sigma_2, up to L = 16/3 h:
