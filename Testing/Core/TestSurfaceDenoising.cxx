@@ -279,6 +279,29 @@ TEST(SurfaceDenoising, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
   }
 }
 
+/// Where edges are short, quadrics through two rings follow the noise.
+TEST(SurfaceDenoising, NoiseIsFoundOnUnevenTriangles)
+{
+  Surface surface = LBlock(32);
+  const Eigen::RowVector3d middle =
+    0.5 * (surface.Vertices.colwise().minCoeff() + surface.Vertices.colwise().maxCoeff());
+  for (Index i = 0; i < surface.NumberOfVertices(); ++i) // planes stay planes
+  {
+    const Eigen::Array3d x = (surface.Vertices.row(i) - middle).array();
+    surface.Vertices.row(i) = (x * (0.25 + x.square())).matrix();
+  }
+  for (const double amount : { 0.2, 0.3 })
+  {
+    const Surface noisy = NoisyAlongNormals(surface, amount);
+    const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
+    const double found =
+      EstimateVertexNoise(mesh, GatherVertices(mesh, noisy.Vertices) / mesh.LengthUnit()) *
+      mesh.LengthUnit() / MeanEdgeLength(surface);
+    EXPECT_NEAR(found, amount, 0.3 * amount);
+    EXPECT_LT(MeanAngle(Denoised(noisy), surface), 0.6 * MeanAngle(noisy, surface));
+  }
+}
+
 /// Where curvature and edges of the shape add to the deviations from quadrics.
 TEST(SurfaceDenoising, CorrelatedNoiseIsFoundBesideTheShape)
 {

@@ -10,6 +10,7 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -31,6 +32,12 @@ constexpr double TailQuantile = 1.96;
 /// Of larger surfaces, every second, third, ... vertex is used: that many have a quantile within
 /// about 1 %.
 constexpr Index EnoughVertices = 20000;
+/// The least radius of a neighbourhood, in deviations of the noise, and the fraction of vertices whose
+/// neighbourhoods may be smaller.
+constexpr double LeastRadius = 2.2;
+constexpr double NarrowFraction = 0.3;
+/// Of sigma in wide neighbourhoods; details have less.
+constexpr double LeastShareOfNoise = 0.85;
 /// (3/2)^3: the variance of details from three rings of neighbours over that from two.
 constexpr double GrowthOfDetails = 3.375;
 /// R0 of EstimateVertexNoise().
@@ -124,8 +131,8 @@ private:
   std::vector<std::size_t> RingEnds;
 };
 
-/// The rows: two main axes of the points, and the normal.
-Eigen::Matrix3d MainAxes(const Points& points, const VertexRange& list)
+/// The rows: two main axes of the points, and the normal. radius: the deviation along the second one.
+Eigen::Matrix3d MainAxes(const Points& points, const VertexRange& list, double& radius)
 {
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
   for (const Index i : list)
@@ -141,6 +148,7 @@ Eigen::Matrix3d MainAxes(const Points& points, const VertexRange& list)
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
+  radius = std::sqrt(std::max(0.0, solver.eigenvalues()[1]) / static_cast<double>(list.size()));
   Eigen::Matrix3d axes;
   axes.row(0) = solver.eigenvectors().col(2).transpose();
   axes.row(1) = solver.eigenvectors().col(1).transpose();
@@ -148,11 +156,19 @@ Eigen::Matrix3d MainAxes(const Points& points, const VertexRange& list)
   return axes;
 }
 
-/// The standardised distance of the vertex from the quadric through `list`; negative if the fit is
-/// not well determined. h: a length of the size of the neighbourhood.
-double StandardizedDistance(const Points& points, Index vertex, const VertexRange& list, double h)
+/// How far a vertex is from the quadric through its neighbours.
+struct QuadricDistance
 {
-  const Eigen::Matrix3d axes = MainAxes(points, list);
+  double Standardized = -1.0; ///< negative if the fit is not well determined
+  double Radius = 0.0; ///< the deviation of the neighbours along their second axis
+};
+
+/// Of the quadric through `list`. h: a length of the size of the neighbourhood.
+QuadricDistance DistanceFromQuadric(
+  const Points& points, Index vertex, const VertexRange& list, double h)
+{
+  QuadricDistance result;
+  const Eigen::Matrix3d axes = MainAxes(points, list, result.Radius);
   Eigen::Matrix<double, 6, 6> normalMatrix = Eigen::Matrix<double, 6, 6>::Zero();
   Quadric right = Quadric::Zero();
   for (const Index i : list)
@@ -167,7 +183,8 @@ double StandardizedDistance(const Points& points, Index vertex, const VertexRang
   const double leverage = factor.solve(Quadric::Unit(0))[0];
   const double distance = std::abs(factor.solve(right)[0]) * h;
   const bool determined = leverage >= 0.0 && leverage < LargestLeverage && std::isfinite(distance);
-  return determined ? distance / std::sqrt(1.0 + leverage) : -1.0;
+  result.Standardized = determined ? distance / std::sqrt(1.0 + leverage) : -1.0;
+  return result;
 }
 
 /// The standard deviation of normally distributed numbers whose absolute values these are, by their
@@ -197,14 +214,14 @@ Index StrideFor(const TriangleMesh& mesh, Index enough)
   return std::max<Index>(1, mesh.NumberOfVertices() / enough);
 }
 
-/// Per number of rings in ascending `rings`: sigma_r, of every vertex with the stride.
-std::vector<Deviation> MeasureDeviations(const TriangleMesh& mesh, const Points& points,
-  const std::vector<int>& rings, Index stride, const ParallelFor& parallel)
+/// Per number of rings in ascending `rings`, of every vertex with the stride.
+std::vector<std::vector<QuadricDistance>> MeasureDistances(const TriangleMesh& mesh,
+  const Points& points, const std::vector<int>& rings, Index stride, const ParallelFor& parallel)
 {
   const Index count = mesh.NumberOfVertices() / stride;
   const double h = mesh.MeanEdgeLength();
-  std::vector<std::vector<double>> distances(
-    rings.size(), std::vector<double>(static_cast<std::size_t>(count)));
+  std::vector<std::vector<QuadricDistance>> distances(
+    rings.size(), std::vector<QuadricDistance>(static_cast<std::size_t>(count)));
   ForEachBlock(parallel, count,
     [&](Index, Index begin, Index end)
     {
@@ -215,18 +232,87 @@ std::vector<Deviation> MeasureDeviations(const TriangleMesh& mesh, const Points&
         for (std::size_t k = 0; k < rings.size(); ++k)
         {
           const VertexRange list = neighbourhood.WithinRings(rings[k]);
-          distances[k][i] = list.size() < SmallestNeighbourhood
-            ? -1.0
-            : StandardizedDistance(points, i * stride, list, h);
+          if (list.size() >= SmallestNeighbourhood)
+          {
+            distances[k][i] = DistanceFromQuadric(points, i * stride, list, h);
+          }
         }
       }
     });
-  std::vector<Deviation> deviations;
-  for (std::vector<double>& values : distances)
+  return distances;
+}
+
+std::vector<double> Standardized(const std::vector<QuadricDistance>& distances)
+{
+  std::vector<double> values;
+  for (const QuadricDistance& distance : distances)
   {
+    values.push_back(distance.Standardized);
+  }
+  return values;
+}
+
+/// sigma_r per number of rings.
+std::vector<Deviation> MeasureDeviations(const TriangleMesh& mesh, const Points& points,
+  const std::vector<int>& rings, Index stride, const ParallelFor& parallel)
+{
+  std::vector<Deviation> deviations;
+  for (const auto& distances : MeasureDistances(mesh, points, rings, stride, parallel))
+  {
+    std::vector<double> values = Standardized(distances);
     deviations.push_back(DeviationOf(values));
   }
   return deviations;
+}
+
+/// Whether a neighbourhood is so wide that its axes are those of the surface under this noise.
+bool IsWide(const QuadricDistance& distance, double noise)
+{
+  return distance.Radius >= LeastRadius * noise;
+}
+
+/// sigma_2 and sigma_3, with so many more rings around each vertex that these are wide under the noise
+/// that is found with them.
+struct WideDeviations
+{
+  std::array<Deviation, 2> Of{};
+  double NarrowShare = 0.0; ///< of vertices whose two rings are not
+};
+
+WideDeviations MeasureInWideNeighbourhoods(
+  const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel)
+{
+  const std::vector<int> rings{ 2, 3, 4, 6, 8, 12 };
+  const auto distances =
+    MeasureDistances(mesh, points, rings, StrideFor(mesh, EnoughWideNeighbourhoods), parallel);
+  const std::size_t count = distances[0].size();
+  std::vector<double> start = Standardized(distances[3]);
+  double noise = DeviationOf(start).Sigma; // that of two rings may be far too small
+  WideDeviations found;
+  for (int repetition = 0; repetition < 8; ++repetition)
+  {
+    std::array<std::vector<double>, 2> of;
+    std::size_t narrow = 0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      std::size_t k = 0;
+      while (k + 2 < rings.size() && !IsWide(distances[k][i], noise))
+      {
+        ++k;
+      }
+      narrow += k > 0 ? 1 : 0;
+      of[0].push_back(distances[k][i].Standardized);
+      of[1].push_back(distances[k + 1][i].Standardized);
+    }
+    found = { { DeviationOf(of[0]), DeviationOf(of[1]) },
+      static_cast<double>(narrow) / static_cast<double>(count) };
+    if (std::abs(found.Of[0].Sigma - noise) <= 0.01 * noise)
+    {
+      break;
+    }
+    noise = found.Of[0].Sigma;
+  }
+  return found;
 }
 
 /// f of EstimateCorrelatedNoise().
@@ -277,6 +363,23 @@ CorrelatedNoise FitCorrelation(
   return isInRange ? found : CorrelatedNoise();
 }
 
+/// The noise in sigma_2 and sigma_3, see EstimateVertexNoise().
+double WithoutDetails(const std::array<Deviation, 2>& deviations)
+{
+  const double two = deviations[0].Sigma;
+  const double three = std::max(two, deviations[1].Sigma);
+  if (!(two > 0.0))
+  {
+    return 0.0;
+  }
+  const double growth = three * three / (two * two) - 1.0;
+  const double relative = growth / GrowthOfRoughDetails;
+  const double rest = 1.0 - GrowthOfRoughDetails / (GrowthOfDetails - 1.0);
+  return two *
+    std::sqrt(std::max(
+      0.0, 1.0 - growth / (GrowthOfDetails - 1.0) - rest * relative * relative * relative));
+}
+
 } // namespace
 
 double QuantileOf(std::vector<double>& values, double fraction)
@@ -303,22 +406,16 @@ double EstimateVertexNoise(
 {
   const std::vector<Deviation> deviations =
     MeasureDeviations(mesh, points, { 2, 3 }, StrideFor(mesh, EnoughVertices), parallel);
-  const double two = deviations[0].Sigma;
-  const double three = std::max(two, deviations[1].Sigma);
   if (!deviations[0].IsOfEnough)
   {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  if (!(two > 0.0))
-  {
-    return 0.0;
-  }
-  const double growth = three * three / (two * two) - 1.0;
-  const double relative = growth / GrowthOfRoughDetails;
-  const double rest = 1.0 - GrowthOfRoughDetails / (GrowthOfDetails - 1.0);
-  return two *
-    std::sqrt(std::max(
-      0.0, 1.0 - growth / (GrowthOfDetails - 1.0) - rest * relative * relative * relative));
+  const double noise = WithoutDetails({ deviations[0], deviations[1] });
+  const WideDeviations wide = MeasureInWideNeighbourhoods(mesh, points, parallel);
+  const double found = WithoutDetails(wide.Of);
+  const bool isNoise =
+    wide.NarrowShare > NarrowFraction && found > LeastShareOfNoise * wide.Of[0].Sigma;
+  return isNoise ? std::max(noise, found) : noise;
 }
 
 CorrelatedNoise EstimateCorrelatedNoise(

@@ -38,6 +38,12 @@ double TailOfNormal(std::vector<double>& values);
 /// not below 0. For small R this extrapolates the variance to a neighbourhood of no size. It is 0
 /// from R0 on, and NaN if less than 30 % of the vertices are left.
 ///
+/// Where edges are short under the noise, the neighbours have no plane, and the quadric follows the noise.
+/// Each vertex takes so many rings, up to eight, that the deviation of the neighbours along their second
+/// axis is 2.2 of the sigma that is found with them. If that needs more than two rings at 30 % of the
+/// vertices and more, as on uneven tessellations, the larger of the two estimates is taken, unless the
+/// second is mostly details.
+///
 /// points: per vertex of the mesh.
 double EstimateVertexNoise(
   const TriangleMesh& mesh, const Points& points, const ParallelFor& parallel = SerialFor());
