@@ -93,7 +93,18 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
          << Word::Array("FixedArray") << ")";
     warnings.push_back({ text, this->SurfaceVersion });
   }
-  if (this->Found.FarVertices > 0)
+  constexpr double largestTail = 1.3;
+  if (this->Found.Tail > largestTail)
+  {
+    Sentence text("points move by more in some places than in others, by up to ");
+    text << this->Found.MaximumDisplacement
+         << ", as noise that is everywhere the same does not: relief may be removed with it (to "
+            "remove "
+            "less, set "
+         << Word::Setting("NoiseLevel") << ")";
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
+  else if (this->Found.FarVertices > 0)
   {
     Sentence text;
     text << this->Found.FarVertices

@@ -618,7 +618,8 @@ def denoise_mesh(
     SurfaceDiffusionWarning
         For triangles of zero area, for coincident points that may come apart, if no noise was found,
         if it is correlated over several edges or like the shape, if the volume of a
-        closed component changes by more than 2 %, and if points moved by more than 10 times its level.
+        closed component changes by more than 2 %, if points moved by more than 10 times its level,
+        and if they moved by more in some places than in others, as noise that is everywhere the same does not.
 
     Examples
     --------

@@ -312,10 +312,10 @@ inline std::vector<FilterKind> AllFilters()
         f->LineFieldOn();
         f->UseAsNormalsOff();
       }),
-    MakeKind<Harmonic>("HarmonicTangent", "aroundHarmonic", 2,
+    MakeKind<Harmonic>("HarmonicTangent", "e1Harmonic", 2,
       [](Harmonic* f)
       {
-        SetInputArray(f, 0, "around");
+        SetInputArray(f, 0, "e1");
         f->SetTangentToToSurface();
       }),
     MakeKind<Harmonic>("HarmonicMinimizing", "NormalsHarmonic", 1,

@@ -33,7 +33,7 @@ constexpr double FarDisplacement = 10.0;
 /// are cut in two. Steps of depth cameras leave up to a fifth.
 constexpr double FlatDistance = 0.01;
 constexpr double LargestFlatShare = 0.25;
-/// Of DisplacementsAreNoise().
+/// Between them, displacements are those of noise and not of relief, see TailOfDisplacements().
 constexpr double SmallestTail = 0.9;
 constexpr double LargestTail = 1.15;
 
@@ -82,12 +82,17 @@ bool HasFlatFaces(const TriangleMesh& mesh, const Points& points, double noise)
   return flat > LargestFlatShare * inner;
 }
 
-/// Whether the displacements along the normals of the moved surface are normally distributed.
-bool DisplacementsAreNoise(const TriangleMesh& mesh, const Points& from, const Points& to)
+/// TailOfNormal() of the displacements along the normals of the moved surface: 1 for noise that is
+/// everywhere the same.
+double TailOfDisplacements(const TriangleMesh& mesh, const Points& from, const Points& to)
 {
   std::vector<double> distances;
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
+    if (to.row(i) == from.row(i)) // fixed
+    {
+      continue;
+    }
     Eigen::RowVector3d normal = Eigen::RowVector3d::Zero();
     for (Index k = mesh.VertexCornersBegin()[i]; k < mesh.VertexCornersBegin()[i + 1]; ++k)
     {
@@ -98,8 +103,7 @@ bool DisplacementsAreNoise(const TriangleMesh& mesh, const Points& from, const P
     }
     distances.push_back(std::abs((to.row(i) - from.row(i)).dot(normal.stableNormalized())));
   }
-  const double tail = TailOfNormal(distances);
-  return SmallestTail < tail && tail < LargestTail;
+  return TailOfNormal(distances);
 }
 
 /// The enclosed volume of each connected component; 0 unless it is closed and consistently oriented.
@@ -149,6 +153,7 @@ struct DenoisedPart
   double NoiseLevel = 0.0;
   double CorrelationLength = 0.0;
   double Relief = 0.0, ReliefLength = 0.0;
+  double Tail = 1.0; ///< of independent noise whose level was estimated
   SurfaceType Type = SurfaceType::Automatic;
   bool IsCoarse = false; ///< its noise cannot be distinguished from its shape
   double VolumeChange = 0.0; ///< over the volume
@@ -235,13 +240,15 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   const SurfaceType type = isCorrelated ? SurfaceType::CAD : settings.Type;
   const DenoisedSurface denoised = DenoiseWithScheme(
     mesh, points, isFixed, noise, scheme, type, parallel, progress.Part(0.05, 1.0));
-  if (correlated.MayBeRelief && !DisplacementsAreNoise(mesh, points, denoised.Moved))
+  const double tail = TailOfDisplacements(mesh, points, denoised.Moved);
+  if (correlated.MayBeRelief && !(SmallestTail < tail && tail < LargestTail))
   {
     result.NoiseLevel = 0.0;
     result.Relief = noise * unit;
     result.ReliefLength = correlated.Length * unit;
     return result;
   }
+  result.Tail = isEstimated ? tail : 1.0;
   result.Type = settings.Type == SurfaceType::Automatic ? denoised.Type : settings.Type;
   result.CorrelationLength = correlated.Length * unit;
   Points places = Points::Zero(rows, 3);
@@ -325,6 +332,7 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
       ? denoised.VolumeChange
       : found.VolumeChange;
     found.CorrelationLength = std::max(found.CorrelationLength, denoised.CorrelationLength);
+    found.Tail = std::max(found.Tail, denoised.Tail);
     if (denoised.Relief > found.Relief)
     {
       found.Relief = denoised.Relief;

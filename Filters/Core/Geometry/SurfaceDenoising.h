@@ -36,6 +36,10 @@ struct DenoisingReport
   /// the points, and the length over which it is correlated. The largest of the parts; 0: none.
   double Relief = 0.0;
   double ReliefLength = 0.0;
+  /// How much more the displacements along the normals differ than those of noise that is everywhere the
+  /// same, where its level was estimated: the largest TailOfNormal() of the parts. Such noise has up to 1.1,
+  /// relief 1.4 to 3, impulsive noise more.
+  double Tail = 1.0;
   /// Those whose noise cannot be distinguished from their shape, and that stay: with less than 200
   /// vertices, or more than a quarter of the edges within flat faces. None if the level is given.
   Index CoarseParts = 0;
