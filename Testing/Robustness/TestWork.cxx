@@ -53,6 +53,7 @@ const std::map<std::string, int> LargestNumbers = {
   { "Harmonic", 60 },
   { "HarmonicMoved", 60 },
   { "HarmonicLines", 60 },
+  { "HarmonicTangent", 60 },
   // A step is several of them.
   { "HarmonicMinimizing", 200 },
   // One solve for u and one for v.
