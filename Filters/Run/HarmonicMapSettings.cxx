@@ -7,7 +7,11 @@
 #include "Run/ModelInputs.h"
 #include "Run/VectorSettings.h"
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
@@ -18,6 +22,29 @@ namespace
 /// The length scale of MoveVertices, in mean edge lengths: noise is shorter, features are longer.
 /// Measured on noisy spheres and on fandisk.
 constexpr double UpdateRange = 5.0;
+
+/// Whether vectors may be tangent to the surface: eight tenths of them lie within 30 degrees of a triangle
+/// at their vertex, of a thousand vertices. It costs little, unlike the tangent planes.
+bool MayBeTangent(const TriangleMesh& mesh, const Points& positions, const PointData& data)
+{
+  const Index stride = std::max<Index>(1, mesh.NumberOfVertices() / 1000);
+  Index known = 0;
+  Index near = 0;
+  for (Index i = 0; i < mesh.NumberOfVertices(); i += stride)
+  {
+    const Index corner = mesh.VertexCorners()[mesh.VertexCornersBegin()[i]];
+    const Eigen::RowVector3d a = positions.row(mesh.OtherCorner(corner, 1)) - positions.row(i);
+    const Eigen::RowVector3d b = positions.row(mesh.OtherCorner(corner, 2)) - positions.row(i);
+    const Eigen::RowVector3d u = data.Given.row(i);
+    const double length = u.norm();
+    if (!data.Missing[i] && length > 0.0)
+    {
+      ++known;
+      near += std::abs(u.dot(a.cross(b).stableNormalized())) <= 0.5 * length ? 1 : 0;
+    }
+  }
+  return 10.0 * near >= 8.0 * known && known > 0;
+}
 
 } // namespace
 
@@ -135,8 +162,13 @@ Values HarmonicMapSettings::PrepareTangents(ModelInputs& inputs, RunResult& resu
   {
     return normals;
   }
-  const TangentPlanes planes(
-    inputs.Surface.SharedMesh(), VertexPositions(inputs.Surface), inputs.Parallel);
+  Points positions = VertexPositions(inputs.Surface);
+  if (!isTangent &&
+    !inputs.Processes.Any(MayBeTangent(inputs.Surface.Mesh(), positions, inputs.Data)))
+  {
+    return normals;
+  }
+  const TangentPlanes planes(inputs.Surface.SharedMesh(), std::move(positions), inputs.Parallel);
   normals.resize(inputs.Data.Given.rows(), 3);
   for (Index i = 0; i < static_cast<Index>(normals.rows()); ++i)
   {

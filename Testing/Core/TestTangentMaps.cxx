@@ -95,16 +95,11 @@ TEST(TangentMaps, LoseTheNoiseOfTheirAngles)
 {
   Testing::Surface s = Testing::Rotated(Testing::Icosphere(4), 0.3);
   const Values clean = NoisyMeridians(s, 0.0);
-  const Values u = HarmonicMapFlow(s.Vertices, s.Faces, NoisyMeridians(s, 0.3),
-    []
-    {
-      HarmonicMapSettings settings = Tangent();
-      settings.Exponent = 2.0;
-      settings.TimeStep = 0.3;
-      settings.NumberOfTimeSteps = 5;
-      return settings;
-    }())
-                     .Result;
+  HarmonicMapSettings settings = Tangent();
+  settings.Exponent = 2.0;
+  settings.TimeStep = 0.3;
+  settings.NumberOfTimeSteps = 5;
+  const Values u = HarmonicMapFlow(s.Vertices, s.Faces, NoisyMeridians(s, 0.3), settings).Result;
   double squares = 0.0;
   Index count = 0;
   for (Eigen::Index i = 0; i < u.rows(); ++i)

@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
-// Files of surfaces and of values, read from memory. Every reader takes memory in proportion to the
-// bytes that it reads, whatever the counts in a file. The text of an error is one sentence.
+// Readers and writers of surfaces and values, in memory. The memory that a reader allocates is at most
+// proportional to the size of the file: counts that a file declares are not trusted. An error message is
+// one sentence.
 namespace SurfaceDiffusion::Files
 {
 

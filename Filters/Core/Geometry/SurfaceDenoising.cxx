@@ -240,7 +240,8 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   const SurfaceType type = isCorrelated ? SurfaceType::CAD : settings.Type;
   const DenoisedSurface denoised = DenoiseWithScheme(
     mesh, points, isFixed, noise, scheme, type, parallel, progress.Part(0.05, 1.0));
-  const double tail = TailOfDisplacements(mesh, points, denoised.Moved);
+  const bool isCertain = !isEstimated && !correlated.MayBeRelief;
+  const double tail = isCertain ? 1.0 : TailOfDisplacements(mesh, points, denoised.Moved);
   if (correlated.MayBeRelief && !(SmallestTail < tail && tail < LargestTail))
   {
     result.NoiseLevel = 0.0;

@@ -120,6 +120,10 @@ void HarmonicMap::ProjectToPlane(Index i)
 
 void HarmonicMap::ProjectToSphere()
 {
+  if (!this->Options.ProjectToSphere && this->Options.Normals.rows() == 0)
+  {
+    return;
+  }
   ForEach(this->Parallel, this->Assembly->Mesh().NumberOfVertices(),
     [&](Index i)
     {
@@ -131,11 +135,9 @@ void HarmonicMap::ProjectToSphere()
       if (this->Options.ProjectToSphere && !Normalize(this->U.row(i)))
       {
         this->U.row(i) = this->Previous.row(i); // its length is zero
+        return;
       }
-      else if (this->Options.ProjectToSphere)
-      {
-        this->ProjectToPlane(i); // of the round-off of a vector that was short
-      }
+      this->ProjectToPlane(i); // a short vector was normalised with its round-off
     });
 }
 

@@ -58,8 +58,8 @@ namespace SurfaceDiffusion
 /// minimum over signs lies below the energy of the signs chosen at the old u, so that the proof
 /// holds.
 ///
-/// With normals of the surface each u_i and x_i is orthogonal to the normal n_i of the surface: a tangent field
-/// with |grad u|^2 in space. The proof is the same: u_i + x_i and f_i lie in the plane.
+/// With normals of the surface, u_i and x_i are orthogonal to the normal n_i: u is a tangent field, and
+/// |grad u|^2 is that in space. The proof holds, since u_i + x_i and f_i lie in the tangent plane.
 class HarmonicMap : public StateModel
 {
 public:

@@ -215,21 +215,19 @@ void ProjectIntoPlanes(const Values& normals, Values& vectors)
 
 void NormalizeFilledInPlanes(const Values& normals, PointData& data)
 {
-  Values any = data.Start;
-  for (Index i = 0; i < static_cast<Index>(any.rows()); ++i)
-  {
-    any.row(i) = Eigen::Vector3d(normals.row(i)).unitOrthogonal();
-  }
   Values parts = data.Start;
   ProjectIntoPlanes(normals, parts);
-  for (Index i = 0; i < static_cast<Index>(any.rows()); ++i)
+  for (Index i = 0; i < static_cast<Index>(parts.rows()); ++i)
   {
     if (data.Missing[i])
     {
+      if (!Normalize(parts.row(i)))
+      {
+        parts.row(i) = Eigen::Vector3d(normals.row(i)).unitOrthogonal();
+      }
       data.Start.row(i) = parts.row(i);
     }
   }
-  NormalizeFilled(data, any);
 }
 
 } // namespace SurfaceDiffusion
