@@ -35,6 +35,8 @@ bool vtkSurfaceDenoisingFilter::FindFields(
 {
   const InputArrays inputs(this, block, fields, problems);
   fields.Fixed = inputs.Find(3, "FixedArray", 1);
+  fields.NameOfSeeds = "CreaseArray";
+  fields.Seeds = inputs.Find(6, fields.NameOfSeeds, 1);
   return true;
 }
 VTK_ABI_NAMESPACE_END

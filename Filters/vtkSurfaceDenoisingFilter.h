@@ -56,6 +56,10 @@
  * Input array 3 (points, one component, optional): points with a nonzero value stay where they
  * are. They still guide their neighbours.
  *
+ * Input array 6 (points or cells, one component, labels 0, 1, ..., optional): creases, which stay as
+ * they are, and whose sides are smoothed apart. They are the edges between two points with nonzero
+ * values, or between two cells of different labels, as those of the faces of a CAD model.
+ *
  * The output has moved points and the point array `Displacement` (three components, in coordinate
  * units). The points keep their precision. Normals of the input, on points or cells, that are
  * active or have the name "Normals" are computed again for the moved points, and tangents are
@@ -89,6 +93,14 @@ public:
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLevel, double);
 
+  /**
+   * Over how many edges points share their noise: the standard deviation, in mean edge lengths, of the
+   * kernel that makes such noise of independent noise. 0 or more; below 0.5 the noise is independent.
+   * Default: 0, which means measured, as far as correlated noise can be told from relief: up to about
+   * 3. With a length and without NoiseLevel, the level is measured for this length.
+   */
+  SURFACEDIFFUSION_PROPERTY(NoiseLength, double);
+
   enum SurfaceTypeType
   {
     SURFACE_TYPE_AUTOMATIC = 0,
@@ -110,6 +122,18 @@ public:
   void SetSurfaceTypeToCAD() { this->SetSurfaceType(SURFACE_TYPE_CAD); }
   void SetSurfaceTypeToOrganic() { this->SetSurfaceType(SURFACE_TYPE_ORGANIC); }
   ///@}
+
+  /**
+   * Edges between triangles whose normals differ by this angle and more, in degrees, are creases,
+   * 0 to 180: their points stay where they are, and the normals on the two sides do not smooth
+   * each other. Default: 0, which means none; sharp edges are found then, and lose their noise, too.
+   */
+  SURFACEDIFFUSION_PROPERTY(CreaseAngle, double);
+
+  /**
+   * No point moves farther than this, in coordinate units. 0 or more. Default: 0, which means no limit.
+   */
+  SURFACEDIFFUSION_PROPERTY(DisplacementLimit, double);
 
   /**
    * The noise level of the last update, given or estimated, in coordinate units: the root mean

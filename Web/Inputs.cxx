@@ -241,9 +241,10 @@ SurfaceData Engine::ReadInputs(const NamedSettings& model, const val& given, con
     {
       data.FidelityFactors = { array.Numbers, array.OnCells };
     }
-    else if (word == "seeds")
+    else if (word == "seeds" || word == "creases")
     {
-      data.Seeds = AsLabels({ array.Numbers, array.OnCells }, Word::Array("SeedArray"));
+      data.Seeds = AsLabels({ array.Numbers, array.OnCells },
+        Word::Array(word == "seeds" ? "SeedArray" : "CreaseArray"));
     }
     else if (word == "speed")
     {

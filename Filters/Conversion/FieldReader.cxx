@@ -184,7 +184,7 @@ Fields ReadFields(const InputFields& arrays, const TriangleCells& cells)
   fields.Fixed = { ReadFlags(arrays.Fixed.Values), arrays.Fixed.OnCells };
   fields.FidelityFactors = { ReadFactors(arrays.Fidelity.Values), arrays.Fidelity.OnCells };
   fields.Seeds = AsLabels({ ReadFactors(arrays.Seeds.Values), arrays.Seeds.OnCells },
-    NamedArray("SeedArray", arrays.Seeds.Values));
+    NamedArray(arrays.NameOfSeeds, arrays.Seeds.Values));
   fields.Sources = arrays.Sources;
   fields.Speeds = { ReadFactors(arrays.Speeds.Values), arrays.Speeds.OnCells };
   fields.StartTimes = ReadFactors(arrays.StartTimes.Values);

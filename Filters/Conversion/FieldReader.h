@@ -50,6 +50,7 @@ struct InputFields
   vtkDataArray* Rates = nullptr; ///< index 4
   LocatedArray Fidelity; ///< index 5
   LocatedArray Seeds; ///< index 6
+  const char* NameOfSeeds = "SeedArray"; ///< their property
   bool DataAreTerms = false; ///< Data is index 7
   std::shared_ptr<const PointSamples> Samples; ///< in place of Data
   std::shared_ptr<const SourceShapes> Sources; ///< in place of Data

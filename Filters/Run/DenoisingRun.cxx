@@ -4,10 +4,69 @@
 
 #include "Core/Geometry/VertexUpdating.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
+
+namespace
+{
+
+/// Nonzero at the vertices of points with nonzero values; empty without values.
+template <typename Value>
+std::vector<char> MarkVertices(const Surface& surface, const std::vector<Value>& values)
+{
+  const Index count = surface.InputMesh().NumberOfVertices();
+  std::vector<char> marks(values.empty() ? 0 : static_cast<std::size_t>(count), 0);
+  for (std::size_t p = 0; p < values.size(); ++p)
+  {
+    const Index vertex = surface.VertexOf(static_cast<Index>(p));
+    if (vertex >= 0 && values[p] != 0)
+    {
+      marks[static_cast<std::size_t>(vertex)] = 1;
+    }
+  }
+  return marks;
+}
+
+/// The edges that CreaseArray marks, by vertices of the mesh: those between two marked points, or
+/// between cells of different labels.
+VertexPairs FindCreases(const Surface& surface, const Fields& fields)
+{
+  VertexPairs creases;
+  const std::vector<Index>& labels = fields.Seeds.Values;
+  if (labels.empty())
+  {
+    return creases;
+  }
+  const TriangleMesh& mesh = surface.InputMesh();
+  const std::vector<char> marks =
+    fields.Seeds.OnCells ? std::vector<char>() : MarkVertices(surface, labels);
+  const auto labelOf = [&](Index triangle)
+  {
+    const Index row = surface.InputTriangle(mesh.InputTriangle()[triangle]);
+    return labels[static_cast<std::size_t>(fields.Cells[static_cast<std::size_t>(row)])];
+  };
+  std::map<std::pair<Index, Index>, Index> firstLabels;
+  for (Index c = 0; c < 3 * mesh.NumberOfTriangles(); ++c)
+  {
+    const std::pair<Index, Index> edge =
+      std::minmax({ mesh.OtherCorner(c, 1), mesh.OtherCorner(c, 2) });
+    const bool isCrease = fields.Seeds.OnCells
+      ? firstLabels.emplace(edge, labelOf(c / 3)).first->second != labelOf(c / 3)
+      : marks[edge.first] != 0 && marks[edge.second] != 0;
+    if (isCrease)
+    {
+      creases.push_back(edge);
+    }
+  }
+  return creases;
+}
+
+} // namespace
 
 void DenoisingRunSettings::Visit(SettingVisitor& visitor)
 {
@@ -19,11 +78,31 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
       "measured, it resembles details. With the SurfaceType Organic, the level is that of "
       "independent noise." },
     this->NoiseLevel, SettingRange::NonNegative());
+  visitor.Number(
+    { "NoiseLength", "",
+      "Over how many edges points share their noise, as those of depth cameras do: the "
+      "standard deviation, in mean edge lengths, of the kernel that makes such noise "
+      "of independent noise. Below 0.5 the noise is independent. 0: measured, as far as "
+      "noise can be told from relief." },
+    this->NoiseLength, SettingRange::NonNegative());
   visitor.Choice({ "SurfaceType", "",
                    "CAD: smooth faces, which may meet in sharp edges. Organic: shapes with details "
                    "of the size of a few triangles, such as scans. Automatic: CAD unless details "
                    "would be lost." },
     this->SurfaceType, { "Automatic", "CAD", "Organic" });
+  visitor.Number(
+    { "CreaseAngle", "degrees",
+      "Edges between triangles whose normals differ by this angle and more, in degrees, are "
+      "creases: "
+      "they stay as they are, and the two sides are smoothed apart. On surfaces with strong "
+      "noise this is so at every edge. 0: none are held; sharp edges are found and kept while "
+      "noise is "
+      "removed from them, too." },
+    this->CreaseAngle, SettingRange::Between(0.0, 180.0, "0 to 180"));
+  visitor.Number(
+    { "DisplacementLimit", "coordinates",
+      "No point moves farther than this, in the unit of the coordinates. 0: no limit." },
+    this->DisplacementLimit, SettingRange::NonNegative());
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
@@ -65,10 +144,19 @@ std::vector<Warning> DenoisingRun::FindOwnWarnings() const
     text << "a part varies by " << this->Found.Relief << " over lengths of "
          << this->Found.ReliefLength
          << ", which is correlated noise or relief, and stays (to remove it, set "
-         << Word::Setting("NoiseLevel") << " to " << this->Found.Relief << ")";
+         << Word::Setting("NoiseLevel") << " to " << this->Found.Relief << " and "
+         << Word::Setting("NoiseLength") << " to " << this->Found.ReliefEdges << ")";
     warnings.push_back({ text, this->SurfaceVersion });
   }
   this->AppendLongEdges(warnings);
+  if (this->Found.LimitedVertices > 0)
+  {
+    Sentence text;
+    text << this->Found.LimitedVertices << " points move as far as "
+         << Word::Setting("DisplacementLimit")
+         << " allows, and keep noise (to remove it, raise this)";
+    warnings.push_back({ text, this->SurfaceVersion });
+  }
   if (this->Found.CorrelationLength > 0.0)
   {
     Sentence text;
@@ -138,17 +226,13 @@ void DenoisingRun::Update(const BlockInput& input, Settings& given, const Progre
   }
   Fields fields = this->ReadFields(input);
   MoveMarksToData(surface, fields, Reduction::Serial(), this->Parallel);
-  std::vector<char> fixed(fields.Fixed.Values.empty() ? 0 : static_cast<std::size_t>(count), 0);
+  const std::vector<char> fixed = MarkVertices(surface, fields.Fixed.Values);
   const auto numberOfPoints = static_cast<Index>(surface.Points().rows());
-  for (Index p = 0; p < numberOfPoints && !fixed.empty(); ++p)
-  {
-    const Index vertex = surface.VertexOf(p);
-    if (vertex >= 0 && fields.Fixed.Values[p])
-    {
-      fixed[vertex] = 1;
-    }
-  }
   DenoisingSettings core;
+  core.NoiseLength = settings.NoiseLength;
+  core.CreaseAngle = settings.CreaseAngle;
+  core.Creases = FindCreases(surface, fields);
+  core.DisplacementLimit = settings.DisplacementLimit / unit;
   core.NoiseLevel = settings.NoiseLevel / unit;
   core.Type = settings.SurfaceType;
   const Points moved = DenoiseSurface(

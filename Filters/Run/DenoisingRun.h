@@ -13,7 +13,10 @@ namespace SurfaceDiffusion
 struct DenoisingRunSettings : Settings
 {
   double NoiseLevel = 0.0;
+  double NoiseLength = 0.0;
   SurfaceDiffusion::SurfaceType SurfaceType = SurfaceDiffusion::SurfaceType::Automatic;
+  double CreaseAngle = 0.0;
+  double DisplacementLimit = 0.0;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
 
@@ -29,7 +32,7 @@ public:
   {
   }
 
-  /// Only Fixed of the fields is read.
+  /// Only Fixed and Seeds of the fields are read; these are CreaseArray.
   void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
 
 private:

@@ -310,7 +310,9 @@ Fields PythonFields::Read() const
   fields.GivenCells = this->Read<Index, std::int64_t>("given_faces").Values;
   fields.Mask = this->Read<char, std::uint8_t>("mask");
   fields.Fixed = this->Read<char, std::uint8_t>("fixed");
-  fields.Seeds = AsLabels(this->Read<double>("seeds"), this->WordOf("seeds", "SeedArray"));
+  fields.Seeds = this->Find("creases")
+    ? AsLabels(this->Read<double>("creases"), this->WordOf("creases", "CreaseArray"))
+    : AsLabels(this->Read<double>("seeds"), this->WordOf("seeds", "SeedArray"));
   fields.FidelityFactors = this->Read<double>("fidelity");
   if (fields.HasCells())
   {

@@ -186,6 +186,7 @@ class Input(Given):
         rates: Any = None,
         fidelity: Any = None,
         seeds: Any = None,
+        creases: Any = None,
         data_are_terms: bool = False,
         integers: bool = False,
         samples: tuple[NDArray[Any], NDArray[Any], NDArray[Any] | None] | None = None,
@@ -202,7 +203,8 @@ class Input(Given):
             arrays["rates"] = np.ascontiguousarray(found, dtype=np.float64), False
         for name, array, convert, what in (
                 ("mask", mask, as_flags, "flag"), ("fixed", fixed, as_flags, "flag"),
-                ("fidelity", fidelity, as_factors, "number"), ("seeds", seeds, as_factors, "label")):
+                ("fidelity", fidelity, as_factors, "number"), ("seeds", seeds, as_factors, "label"),
+                ("creases", creases, as_factors, "label")):
             if array is not None:
                 arrays[name] = convert(name, array), find_place(name, array, (n, m), what, data_on_faces)
         if refined is not None:

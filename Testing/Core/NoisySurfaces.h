@@ -158,4 +158,30 @@ inline Surface NoisyAlongNormals(Surface s, double amount, double fraction = 1.0
   return s;
 }
 
+/// Where: the share of the waves at a point of the torus.
+template <typename Where>
+Surface RoughTorus(Index across, const Where& where)
+{
+  Surface rough = Torus(2 * across, across);
+  for (Index i = 0; i < rough.NumberOfVertices(); ++i)
+  {
+    const Eigen::RowVector3d p = rough.Vertices.row(i);
+    const Eigen::RowVector3d centre = 2.0 * Eigen::RowVector3d(p[0], p[1], 0.0).normalized();
+    rough.Vertices.row(i) += 0.15 * where(p) * std::sin(7.0 * p[0]) *
+      std::cos(6.0 * p[1] + 3.0 * p[2]) * (p - centre).normalized();
+  }
+  return rough;
+}
+
+inline Surface RoughTorus(Index across)
+{
+  return RoughTorus(across, [](const Eigen::RowVector3d&) { return 1.0; });
+}
+
+/// Its waves are in x > 0.
+inline Surface HalfRoughTorus(Index across)
+{
+  return RoughTorus(across, [](const Eigen::RowVector3d& p) { return std::clamp(p[0], 0.0, 1.0); });
+}
+
 } // namespace SurfaceDiffusion::Testing

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/NormalVariation.h"
-#include "Core/Geometry/VertexNoise.h"
+#include "Core/Geometry/QuadricDistances.h"
 #include "Meshes.h"
 #include "NoisySurfaces.h"
 #include "ThreadedFor.h"

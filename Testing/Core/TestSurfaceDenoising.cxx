@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BlockParts.h"
 #include "Core/Geometry/FaceFlips.h"
+#include "Core/Geometry/InnerEdges.h"
 #include "Core/Geometry/LinearNormals.h"
-#include "Core/Geometry/SurfaceDenoising.h"
 #include "Core/Geometry/TriangleOrientation.h"
 #include "Core/Geometry/VertexFans.h"
 #include "Core/Geometry/VertexNoise.h"
+#include "DenoisedSurfaces.h"
 #include "Hubs.h"
 #include "Interpolation.h"
 #include "Meshes.h"
@@ -27,45 +28,8 @@ using namespace SurfaceDiffusion::Testing;
 namespace
 {
 
-Surface Denoised(const Surface& s, const DenoisingSettings& settings = DenoisingSettings(),
-  const std::vector<char>& fixedPoints = {}, DenoisingReport* report = nullptr,
-  const ParallelFor& parallel = SerialFor())
-{
-  const TriangleMesh mesh(s.Vertices, s.Faces);
-  const Points points = GatherVertices(mesh, s.Vertices) / mesh.LengthUnit();
-  std::vector<char> fixed;
-  for (const Index i : mesh.InputVertex())
-  {
-    fixed.push_back(fixedPoints.empty() ? 0 : fixedPoints[i]);
-  }
-  DenoisingSettings scaled = settings;
-  scaled.NoiseLevel /= mesh.LengthUnit();
-  const Points moved = DenoiseSurface(mesh, points, fixed, scaled, report, parallel);
-  Surface result = s;
-  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-  {
-    result.Vertices.row(mesh.InputVertex()[i]) = moved.row(i) * mesh.LengthUnit();
-  }
-  return result;
-}
-
-double LargestDistance(const Surface& a, const Surface& b)
-{
-  return (a.Vertices - b.Vertices).rowwise().norm().maxCoeff();
-}
-
 /// Of the mean edge length: the variation of normals is minimised in single precision.
 constexpr double Rounding = 1e-6;
-
-/// In units of the surface.
-double MeanEdgeLength(const TriangleMesh& mesh)
-{
-  return MeanEdge(mesh) * mesh.LengthUnit();
-}
-double MeanEdgeLength(const Surface& surface)
-{
-  return MeanEdgeLength(TriangleMesh(surface.Vertices, surface.Faces));
-}
 
 /// A flat surface in the plane z = 0 with its faces.
 struct FlatSurface
@@ -86,37 +50,6 @@ struct FlatSurface
   Points Place; ///< of the vertices
   FaceGeometry Geometry;
 };
-
-} // namespace
-
-namespace
-{
-
-/// Where: the share of the waves at a point of the torus.
-template <typename Where>
-Surface RoughTorus(Index across, const Where& where)
-{
-  Surface rough = Torus(2 * across, across);
-  for (Index i = 0; i < rough.NumberOfVertices(); ++i)
-  {
-    const Eigen::RowVector3d p = rough.Vertices.row(i);
-    const Eigen::RowVector3d centre = 2.0 * Eigen::RowVector3d(p[0], p[1], 0.0).normalized();
-    rough.Vertices.row(i) += 0.15 * where(p) * std::sin(7.0 * p[0]) *
-      std::cos(6.0 * p[1] + 3.0 * p[2]) * (p - centre).normalized();
-  }
-  return rough;
-}
-
-Surface RoughTorus(Index across)
-{
-  return RoughTorus(across, [](const Eigen::RowVector3d&) { return 1.0; });
-}
-
-/// Its waves are in x > 0.
-Surface HalfRoughTorus(Index across)
-{
-  return RoughTorus(across, [](const Eigen::RowVector3d& p) { return std::clamp(p[0], 0.0, 1.0); });
-}
 
 } // namespace
 
@@ -221,192 +154,6 @@ TEST(SurfaceDenoising, WholeStepsAreKeptWhereTheyRemoveNoDetails)
     settings.NoiseLevel = 0.3 * MeanEdgeLength(surface);
     settings.Type = SurfaceType::Organic;
     EXPECT_LT(MeanAngle(Denoised(NoisyAlongNormals(surface, 0.3), settings), surface), largest);
-  }
-}
-
-namespace
-{
-
-/// Gaussian noise along the normals with the covariance exp(-d^2 / (2 L^2)), L in mean edge lengths:
-/// white noise after steps of heat flow, each of the variance 1/8 h^2 per axis, to L^2 / 2.
-Surface WithCorrelatedNoise(Surface s, double amount, double length)
-{
-  const Surface white = NoisyAlongNormals(s, 1.0);
-  const TriangleMesh mesh(s.Vertices, s.Faces);
-  const double h = MeanEdgeLength(mesh);
-  Points offsets = white.Vertices - s.Vertices;
-  for (int step = 0; step < std::lround(4.0 * length * length); ++step)
-  {
-    // Each neighbour is seen twice. The mean square of its distance along an axis is h^2 / 2.
-    Points sums = Points::Zero(offsets.rows(), 3);
-    Vector counts = Vector::Zero(offsets.rows());
-    for (Index t = 0; t < s.NumberOfTriangles(); ++t)
-    {
-      for (int a = 0; a < 3; ++a)
-      {
-        sums.row(s.Faces(t, a)) +=
-          offsets.row(s.Faces(t, (a + 1) % 3)) + offsets.row(s.Faces(t, (a + 2) % 3));
-        counts[s.Faces(t, a)] += 2.0;
-      }
-    }
-    for (Index i = 0; i < s.NumberOfVertices(); ++i)
-    {
-      offsets.row(i) = 0.75 * offsets.row(i) + 0.25 / counts[i] * sums.row(i);
-    }
-  }
-  const double level = std::sqrt(offsets.squaredNorm() / static_cast<double>(offsets.rows()));
-  s.Vertices += amount * h / level * offsets;
-  return s;
-}
-
-} // namespace
-
-TEST(SurfaceDenoising, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
-{
-  for (const Surface& surface : { Icosphere(5), Strip(80, 60, 8.0, 6.0) })
-  {
-    const Surface noisy = WithCorrelatedNoise(surface, 0.3, 2.0);
-    const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
-    const double h = MeanEdge(mesh);
-    EXPECT_LT(
-      EstimateVertexNoise(mesh, GatherVertices(mesh, noisy.Vertices) / mesh.LengthUnit()), 0.1 * h);
-    DenoisingReport report;
-    const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
-    EXPECT_NEAR(report.NoiseLevel / h, 0.3, 0.1);
-    EXPECT_GT(report.CorrelationLength / h, 1.0);
-    EXPECT_LT(report.CorrelationLength / h, 4.0);
-    EXPECT_LT(MeanAngle(result, surface), 0.25 * MeanAngle(noisy, surface));
-  }
-}
-
-/// Where edges are short, quadrics through two rings follow the noise.
-TEST(SurfaceDenoising, NoiseIsFoundOnUnevenTriangles)
-{
-  Surface surface = LBlock(32);
-  const Eigen::RowVector3d middle =
-    0.5 * (surface.Vertices.colwise().minCoeff() + surface.Vertices.colwise().maxCoeff());
-  for (Index i = 0; i < surface.NumberOfVertices(); ++i) // planes stay planes
-  {
-    const Eigen::Array3d x = (surface.Vertices.row(i) - middle).array();
-    surface.Vertices.row(i) = (x * (0.25 + x.square())).matrix();
-  }
-  for (const double amount : { 0.2, 0.3 })
-  {
-    const Surface noisy = NoisyAlongNormals(surface, amount);
-    const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
-    const double found =
-      EstimateVertexNoise(mesh, GatherVertices(mesh, noisy.Vertices) / mesh.LengthUnit()) *
-      mesh.LengthUnit() / MeanEdgeLength(surface);
-    EXPECT_NEAR(found, amount, 0.3 * amount);
-    EXPECT_LT(MeanAngle(Denoised(noisy), surface), 0.6 * MeanAngle(noisy, surface));
-  }
-}
-
-/// Where curvature and edges of the shape add to the deviations from quadrics.
-TEST(SurfaceDenoising, CorrelatedNoiseIsFoundBesideTheShape)
-{
-  for (const Surface& surface : { LBlock(32), Torus(120, 60) })
-  {
-    const Surface noisy = WithCorrelatedNoise(surface, 0.3, 2.0);
-    DenoisingReport report;
-    const Surface result = Denoised(noisy, DenoisingSettings(), {}, &report);
-    EXPECT_NEAR(report.NoiseLevel / MeanEdge(TriangleMesh(noisy.Vertices, noisy.Faces)), 0.3, 0.1);
-    EXPECT_LT(MeanAngle(result, surface), 0.5 * MeanAngle(noisy, surface));
-    EXPECT_EQ(report.Relief, 0.0);
-  }
-}
-
-/// Noise is everywhere the same, and relief is not.
-TEST(SurfaceDenoising, ReliefThatResemblesNoiseStaysAndIsReported)
-{
-  const Surface surface = Icosphere(5);
-  Surface relief = WithCorrelatedNoise(surface, 0.2, 2.0);
-  for (Index i = 0; i < surface.NumberOfVertices(); ++i)
-  {
-    const double z = surface.Vertices(i, 2);
-    relief.Vertices.row(i) = surface.Vertices.row(i) +
-      std::exp(1.5 * z) * (relief.Vertices.row(i) - surface.Vertices.row(i));
-  }
-  DenoisingReport report;
-  const Surface result = Denoised(relief, DenoisingSettings(), {}, &report);
-  EXPECT_EQ(result.Vertices, relief.Vertices);
-  EXPECT_EQ(report.NoiseLevel, 0.0);
-  const double h = MeanEdge(TriangleMesh(relief.Vertices, relief.Faces));
-  EXPECT_NEAR(report.Relief / h, 0.2, 0.1);
-  EXPECT_NEAR(report.ReliefLength / h, 2.0, 1.0);
-}
-
-/// It resembles details, below the level that is given.
-TEST(SurfaceDenoising, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
-{
-  for (const Surface& surface : { LBlock(32), Torus(120, 60), Icosphere(5) })
-  {
-    const TriangleMesh mesh(surface.Vertices, surface.Faces);
-    const double h = MeanEdgeLength(mesh);
-    for (const double length : { 1.5, 2.0, 3.0 })
-    {
-      const Surface noisy = WithCorrelatedNoise(surface, 0.3, length);
-      DenoisingSettings settings;
-      settings.NoiseLevel = 0.3 * h;
-      DenoisingReport report;
-      const Surface result = Denoised(noisy, settings, {}, &report);
-      EXPECT_NEAR(report.CorrelationLength * mesh.LengthUnit() / h, length, 0.5 * length);
-      EXPECT_LT(MeanAngle(result, surface), 0.5 * MeanAngle(noisy, surface)) << length;
-    }
-    DenoisingSettings settings;
-    settings.NoiseLevel = 0.3 * h;
-    DenoisingReport report;
-    Denoised(NoisyAlongNormals(surface, 0.2), settings, {}, &report);
-    EXPECT_EQ(report.CorrelationLength, 0.0);
-  }
-}
-
-namespace
-{
-
-/// A torus of 192 x 96 points with regular waves, this many triangles long and half an edge high.
-Surface WavyTorus(int length)
-{
-  Surface wavy = Torus(192, 96);
-  const double height = 0.5 * MeanEdgeLength(wavy);
-  for (Index i = 0; i < wavy.NumberOfVertices(); ++i)
-  {
-    const Eigen::RowVector3d p = wavy.Vertices.row(i);
-    const Eigen::RowVector3d centre = 2.0 * Eigen::RowVector3d(p[0], p[1], 0.0).normalized();
-    const double around = std::atan2(p[1], p[0]);
-    const double across = std::atan2(p[2], std::hypot(p[0], p[1]) - 2.0);
-    wavy.Vertices.row(i) += height * std::cos(192.0 / length * around) *
-      std::cos(96.0 / length * across) * (p - centre).normalized();
-  }
-  return wavy;
-}
-
-} // namespace
-
-/// Waves of six triangles were taken for correlated noise.
-TEST(SurfaceDenoising, RegularWavesAreNoNoise)
-{
-  for (const int length : { 6, 8, 12, 16 })
-  {
-    const Surface wavy = WavyTorus(length);
-    EXPECT_EQ(LargestDistance(Denoised(wavy), wavy), 0.0) << length;
-    const Surface noisy = NoisyAlongNormals(wavy, 0.05);
-    EXPECT_LT(MeanAngle(Denoised(noisy), wavy), 1.1 * MeanAngle(noisy, wavy)) << length;
-  }
-}
-
-TEST(SurfaceDenoising, NeitherWhiteNoiseNorShapeIsCorrelatedNoise)
-{
-  for (const Surface& surface :
-    { Icosphere(5), Torus(80, 40), LBlock(32), NoisyAlongNormals(Icosphere(5), 0.3),
-      NoisyAlongNormals(Torus(80, 40), 0.1), NoisyAlongNormals(LBlock(32), 0.3),
-      NoisyAlongNormals(HalfRoughTorus(120), 0.2), NoisyAlongNormals(HalfRoughTorus(120), 0.3) })
-  {
-    const TriangleMesh mesh(surface.Vertices, surface.Faces);
-    const CorrelatedNoise found =
-      EstimateCorrelatedNoise(mesh, GatherVertices(mesh, surface.Vertices));
-    EXPECT_EQ(found.Level, 0.0);
-    EXPECT_EQ(found.Length, 0.0);
   }
 }
 
@@ -1129,5 +876,107 @@ TEST(SurfaceDenoising, AbortEndsTheWork)
       EXPECT_EQ(reports, last);
     }
     EXPECT_EQ(denoise([](double) { return true; }), whole);
+  }
+}
+
+namespace
+{
+
+/// Two planes that differ by an angle, in degrees.
+Surface Roof(Index columns, double angle)
+{
+  Surface roof = Strip(columns, columns, 2.0, 2.0);
+  for (Index i = 0; i < roof.NumberOfVertices(); ++i)
+  {
+    roof.Vertices(i, 2) =
+      -std::abs(roof.Vertices(i, 0) - 1.0) * std::tan(angle * std::acos(-1.0) / 360.0);
+  }
+  return roof;
+}
+
+/// Noise along the normals, which its creases do not have.
+struct NoisyBetweenCreases
+{
+  explicit NoisyBetweenCreases(const Surface& surface, double amount)
+    : Noisy(NoisyAlongNormals(surface, amount))
+  {
+    const TriangleMesh mesh(surface.Vertices, surface.Faces);
+    ForEachInnerEdge(mesh,
+      [&](Index low, Index high, Index first, Index second)
+      {
+        const auto at = [&](Index i) -> Eigen::RowVector3d
+        { return surface.Vertices.row(mesh.InputVertex()[i]); };
+        const Eigen::RowVector3d n = (at(high) - at(low)).cross(at(first) - at(low)).normalized();
+        if (std::abs(n.dot((at(second) - at(low)).normalized())) > 0.02)
+        {
+          const std::pair<Index, Index> edge(mesh.InputVertex()[low], mesh.InputVertex()[high]);
+          this->Creases.push_back(edge);
+          for (const Index i : { edge.first, edge.second })
+          {
+            this->Noisy.Vertices.row(i) = surface.Vertices.row(i);
+          }
+        }
+      });
+  }
+
+  Surface Noisy;
+  VertexPairs Creases;
+};
+
+} // namespace
+
+TEST(SurfaceDenoising, CreasesStayAndPartTheirSides)
+{
+  const Surface roof = Roof(40, 6.0);
+  const NoisyBetweenCreases given(roof, 0.2);
+  DenoisingSettings settings;
+  settings.NoiseLevel = 0.2 * MeanEdgeLength(roof);
+  const double without = MeanAngle(Denoised(given.Noisy, settings), roof);
+  settings.Creases = given.Creases;
+  const Surface result = Denoised(given.Noisy, settings);
+  for (const auto& [i, j] : given.Creases)
+  {
+    EXPECT_EQ(result.Vertices.row(i), roof.Vertices.row(i));
+    EXPECT_EQ(result.Vertices.row(j), roof.Vertices.row(j));
+  }
+  EXPECT_LT(MeanAngle(result, roof), 0.75 * without);
+}
+
+TEST(SurfaceDenoising, EdgesFromAnAngleOnStay)
+{
+  const Surface block = LBlock(24);
+  const NoisyBetweenCreases given(block, 0.03);
+  DenoisingSettings settings;
+  settings.CreaseAngle = 60.0;
+  const Surface result = Denoised(given.Noisy, settings);
+  double largest = 0.0;
+  for (const auto& [i, j] : given.Creases)
+  {
+    largest = std::max(largest, (result.Vertices.row(i) - block.Vertices.row(i)).norm());
+  }
+  EXPECT_EQ(largest, 0.0);
+  EXPECT_LT(MeanAngle(result, block), 0.3 * MeanAngle(given.Noisy, block));
+  settings.CreaseAngle = 1e-6; // every edge of a noisy surface
+  const Surface noisy = NoisyAlongNormals(block, 0.3);
+  EXPECT_EQ(LargestDistance(Denoised(noisy, settings), noisy), 0.0);
+}
+
+TEST(SurfaceDenoising, NoPointMovesFartherThanTheLimit)
+{
+  Surface noisy = NoisyAlongNormals(LBlock(24), 0.3);
+  noisy.Vertices.row(100) *= 3.0; // a spike
+  DenoisingSettings settings;
+  settings.DisplacementLimit = 0.2 * MeanEdgeLength(noisy);
+  DenoisingReport report;
+  const Surface limited = Denoised(noisy, settings, {}, &report);
+  EXPECT_NEAR(LargestDistance(limited, noisy), settings.DisplacementLimit, 1e-9);
+  EXPECT_GT(report.LimitedVertices, 100);
+  const Surface result = Denoised(noisy);
+  for (Index i = 0; i < noisy.NumberOfVertices(); ++i)
+  {
+    const Eigen::RowVector3d step = result.Vertices.row(i) - noisy.Vertices.row(i);
+    const double shorter = std::min(1.0, settings.DisplacementLimit / step.norm());
+    EXPECT_NEAR(
+      (limited.Vertices.row(i) - noisy.Vertices.row(i) - shorter * step).norm(), 0.0, 1e-9);
   }
 }

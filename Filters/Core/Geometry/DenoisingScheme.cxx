@@ -7,7 +7,7 @@
 #include "Core/Geometry/LinearNormals.h"
 #include "Core/Geometry/NormalFit.h"
 #include "Core/Geometry/NormalVariation.h"
-#include "Core/Geometry/VertexNoise.h"
+#include "Core/Geometry/QuadricDistances.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +61,8 @@ class Denoising
 {
 public:
   Denoising(const TriangleMesh& mesh, const Points& points, const std::vector<char>& fixed,
-    double noise, const DenoisingScheme& scheme, const ParallelFor& parallel,
-    const ProgressMonitor& progress)
+    const VertexPairs& creases, double noise, const DenoisingScheme& scheme,
+    const ParallelFor& parallel, const ProgressMonitor& progress)
     : Graph(mesh, parallel, progress)
     , Given(points)
     , Fixed(fixed)
@@ -72,6 +72,10 @@ public:
     , Moved(points)
     , Statistics(mesh, fixed, parallel)
   {
+    if (!creases.empty())
+    {
+      this->Graph.Separate(creases, parallel);
+    }
   }
 
   DenoisedSurface Run(SurfaceType type, const ProgressMonitor& progress)
@@ -371,11 +375,12 @@ DenoisingScheme SchemeForCorrelatedNoise(double length)
 }
 
 DenoisedSurface DenoiseWithScheme(const TriangleMesh& mesh, const Points& points,
-  const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme, SurfaceType type,
-  const ParallelFor& parallel, const ProgressMonitor& progress)
+  const std::vector<char>& fixed, const VertexPairs& creases, double noise,
+  const DenoisingScheme& scheme, SurfaceType type, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
 {
   Denoising denoising(
-    mesh, points, fixed, noise, scheme, parallel, progress.Part(0.0, GraphProgress));
+    mesh, points, fixed, creases, noise, scheme, parallel, progress.Part(0.0, GraphProgress));
   return denoising.Run(type, progress.Part(GraphProgress, 1.0));
 }
 

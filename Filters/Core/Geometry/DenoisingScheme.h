@@ -70,9 +70,11 @@ struct DenoisedSurface
 /// of surfaces of the type Organic by the first two. If the type is Automatic, the result of the
 /// third is kept if its displacements are as white as independent noise, within two standard
 /// deviations (see DisplacementStatistics).
-/// points: per vertex of the mesh; fixed: see DenoiseSurface(). Throws Aborted.
+/// points: per vertex of the mesh; fixed: see DenoiseSurface(); creases: over which normals have
+/// nothing to do with each other, and whose vertices are fixed. Throws Aborted.
 DenoisedSurface DenoiseWithScheme(const TriangleMesh& mesh, const Points& points,
-  const std::vector<char>& fixed, double noise, const DenoisingScheme& scheme, SurfaceType type,
-  const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+  const std::vector<char>& fixed, const VertexPairs& creases, double noise,
+  const DenoisingScheme& scheme, SurfaceType type, const ParallelFor& parallel = SerialFor(),
+  const ProgressMonitor& progress = ProgressMonitor());
 
 } // namespace SurfaceDiffusion

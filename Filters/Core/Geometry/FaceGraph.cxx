@@ -6,6 +6,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <array>
+
 namespace SurfaceDiffusion
 {
 
@@ -69,6 +72,46 @@ FaceGraph::FaceGraph(
         }
       }
     });
+}
+
+void FaceGraph::Separate(const VertexPairs& edges, const ParallelFor& parallel)
+{
+  std::vector<char> isEnd(static_cast<std::size_t>(this->Mesh.NumberOfVertices()), 0);
+  for (const auto& [i, j] : edges)
+  {
+    isEnd[i] = isEnd[j] = 1;
+  }
+  const Triangles& triangles = this->Mesh.TriangleVertices();
+  const auto areSeparate = [&](Index t, Index u)
+  {
+    std::array<Index, 3> shared{};
+    int count = 0;
+    for (int a = 0; a < 3; ++a)
+    {
+      const Index vertex = triangles(t, a);
+      if (vertex == triangles(u, 0) || vertex == triangles(u, 1) || vertex == triangles(u, 2))
+      {
+        shared[count++] = vertex;
+      }
+    }
+    const std::pair<Index, Index> edge = std::minmax(shared[0], shared[1]);
+    return count == 2 ? std::binary_search(edges.begin(), edges.end(), edge)
+                      : count == 1 && isEnd[shared[0]];
+  };
+  for (IndexLists* const lists : { &this->Ring, &this->Across })
+  {
+    *lists = MakeLists(this->NumberOfFaces(), parallel,
+      [&](Index t, std::vector<Index>& entries)
+      {
+        for (Offset k = lists->Begin[t]; k < lists->Begin[t + 1]; ++k)
+        {
+          if (!areSeparate(t, lists->Entries[k]))
+          {
+            entries.push_back(lists->Entries[k]);
+          }
+        }
+      });
+  }
 }
 
 void FaceGeometry::Measure(

@@ -6,8 +6,14 @@
 #include "Core/Foundation/ProgressMonitor.h"
 #include "Core/Surface/TriangleMesh.h"
 
+#include <utility>
+#include <vector>
+
 namespace SurfaceDiffusion
 {
+
+/// Edges by their two vertices, the smaller first, ascending.
+using VertexPairs = std::vector<std::pair<Index, Index>>;
 
 /// The triangles of a mesh as the nodes of a graph.
 struct FaceGraph
@@ -15,6 +21,10 @@ struct FaceGraph
   /// Throws Aborted.
   explicit FaceGraph(const TriangleMesh& mesh, const ParallelFor& parallel = SerialFor(),
     const ProgressMonitor& progress = ProgressMonitor());
+
+  /// Triangles on two sides of these edges are no longer neighbours, nor are those at a vertex of
+  /// them that share no other edge.
+  void Separate(const VertexPairs& edges, const ParallelFor& parallel);
 
   Index NumberOfFaces() const { return this->Mesh.NumberOfTriangles(); }
 

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/SurfaceDenoising.h"
 
+#include "Core/Geometry/CorrelatedVertexNoise.h"
+#include "Core/Geometry/CreaseEdges.h"
 #include "Core/Geometry/DenoisingScheme.h"
+#include "Core/Geometry/InnerEdges.h"
+#include "Core/Geometry/QuadricDistances.h"
 #include "Core/Geometry/Spikes.h"
 #include "Core/Geometry/SurfaceParts.h"
 #include "Core/Geometry/VertexNoise.h"
@@ -12,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <tuple>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -26,6 +29,7 @@ namespace
 constexpr double SmallestEstimate = 0.005;
 /// A given level below this, in h, is none: that of points in single precision.
 constexpr double SmallestNoise = 1e-4;
+constexpr double SmallestNoiseLength = 0.5; ///< of noise that is not independent, in h
 /// A displacement beyond this many noise levels is reported.
 constexpr double FarDisplacement = 10.0;
 /// Of two triangles, the fourth corner is that near to the plane of the first three, in noise levels,
@@ -42,7 +46,7 @@ constexpr double LargestTail = 1.15;
 double EstimateNoise(const TriangleMesh& mesh, const Points& points,
   const CorrelatedNoise& correlated, const ParallelFor& parallel)
 {
-  if (correlated.Level > 0.0)
+  if (correlated.Length > 0.0)
   {
     return correlated.Level;
   }
@@ -54,22 +58,10 @@ double EstimateNoise(const TriangleMesh& mesh, const Points& points,
 /// none of them there, is no explanation: vertices are at corners and edges of the shape.
 bool HasFlatFaces(const TriangleMesh& mesh, const Points& points, double noise)
 {
-  using Side = std::tuple<Index, Index, Index>; // two vertices and the one opposite
-  std::vector<Side> sides;
-  sides.reserve(3 * static_cast<std::size_t>(mesh.NumberOfTriangles()));
-  for (Index c = 0; c < 3 * mesh.NumberOfTriangles(); ++c)
-  {
-    const auto [low, high] = std::minmax({ mesh.OtherCorner(c, 1), mesh.OtherCorner(c, 2) });
-    sides.emplace_back(low, high, mesh.TriangleVertices()(c / 3, c % 3));
-  }
-  std::sort(sides.begin(), sides.end());
   Index inner = 0;
   Index flat = 0;
-  for (std::size_t k = 0; k + 1 < sides.size(); ++k)
-  {
-    const auto [low, high, first] = sides[k];
-    const auto [otherLow, otherHigh, second] = sides[k + 1];
-    if (low == otherLow && high == otherHigh)
+  ForEachInnerEdge(mesh,
+    [&](Index low, Index high, Index first, Index second)
     {
       const Eigen::RowVector3d from = points.row(low);
       const Eigen::RowVector3d along = points.row(high) - from;
@@ -77,8 +69,7 @@ bool HasFlatFaces(const TriangleMesh& mesh, const Points& points, double noise)
       const Eigen::RowVector3d normal = along.cross(other).stableNormalized();
       ++inner;
       flat += std::abs(normal.dot(points.row(second) - from)) < FlatDistance * noise;
-    }
-  }
+    });
   return flat > LargestFlatShare * inner;
 }
 
@@ -147,12 +138,19 @@ std::vector<double> VolumesOfComponents(const TriangleMesh& mesh, const Points& 
   return volumes;
 }
 
+/// A displacement, shortened to the limit unless this is 0.
+Eigen::RowVector3d WithinLimit(const Eigen::RowVector3d& step, double limit)
+{
+  const double length = step.norm();
+  return limit > 0.0 && length > limit ? Eigen::RowVector3d(limit / length * step) : step;
+}
+
 /// What was found of a part, and the displacements of its rows.
 struct DenoisedPart
 {
   double NoiseLevel = 0.0;
   double CorrelationLength = 0.0;
-  double Relief = 0.0, ReliefLength = 0.0;
+  double Relief = 0.0, ReliefLength = 0.0, ReliefEdges = 0.0;
   double Tail = 1.0; ///< of independent noise whose level was estimated
   SurfaceType Type = SurfaceType::Automatic;
   bool IsCoarse = false; ///< its noise cannot be distinguished from its shape
@@ -181,10 +179,24 @@ std::vector<std::pair<Index, Eigen::RowVector3d>> PlaceSpikes(const TriangleMesh
   return moved;
 }
 
-/// fixed: per row of the part, may be empty. The part loses its places and faces, which the mesh
-/// has.
+/// What is known of the noise before it is measured, see DenoisingSettings; in the unit of the mesh.
+CorrelatedNoise FindCorrelation(const TriangleMesh& mesh, const Points& points, double given,
+  const DenoisingSettings& settings, const ParallelFor& parallel)
+{
+  if (settings.NoiseLength >= SmallestNoiseLength)
+  {
+    return NoiseOfLength(mesh, points, settings.NoiseLength, given, parallel);
+  }
+  const bool isIndependent =
+    settings.NoiseLength > 0.0 || (given > 0.0 && settings.Type == SurfaceType::Organic);
+  return isIndependent ? CorrelatedNoise() : EstimateCorrelatedNoise(mesh, points, given, parallel);
+}
+
+/// fixed: per row of the part, may be empty; creases: pairs of rows. The part loses its places and
+/// faces, which the mesh has.
 DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
-  const DenoisingSettings& settings, const ParallelFor& parallel, const ProgressMonitor& progress)
+  const VertexPairs& creasesOfRows, const DenoisingSettings& settings, const ParallelFor& parallel,
+  const ProgressMonitor& progress)
 {
   auto shape = std::make_unique<const TriangleMesh>(part.Places, part.Faces, parallel);
   std::vector<std::pair<Index, Eigen::RowVector3d>> spikes;
@@ -204,9 +216,7 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   part.Faces = Triangles();
   progress.Report(0.02);
   const double given = settings.NoiseLevel / unit;
-  const CorrelatedNoise correlated = given > 0.0 && settings.Type == SurfaceType::Organic
-    ? CorrelatedNoise()
-    : EstimateCorrelatedNoise(mesh, points, given, parallel);
+  const CorrelatedNoise correlated = FindCorrelation(mesh, points, given, settings, parallel);
   const double noise = given > 0.0 ? given : EstimateNoise(mesh, points, correlated, parallel);
   progress.Report(0.05);
   DenoisedPart result;
@@ -228,18 +238,24 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
   {
     return result;
   }
-  std::vector<char> isFixed;
-  for (Index i = 0; i < mesh.NumberOfVertices() && !fixed.empty(); ++i)
+  const VertexPairs creases = FindCreases(mesh, points, settings.CreaseAngle, creasesOfRows);
+  const auto count = static_cast<std::size_t>(mesh.NumberOfVertices());
+  std::vector<char> isFixed(fixed.empty() && creases.empty() ? 0 : count, 0);
+  for (std::size_t i = 0; i < count && !fixed.empty(); ++i)
   {
-    isFixed.push_back(fixed[mesh.InputVertex()[i]]);
+    isFixed[i] = fixed[mesh.InputVertex()[i]];
+  }
+  for (const auto& [i, j] : creases)
+  {
+    isFixed[i] = isFixed[j] = 1;
   }
   const double h = mesh.MeanEdgeLength();
   const bool isCorrelated = correlated.Length > 0.0;
   const DenoisingScheme scheme = isCorrelated ? SchemeForCorrelatedNoise(correlated.Length / h)
                                               : SchemeForIndependentNoise(noise / h);
   const SurfaceType type = isCorrelated ? SurfaceType::CAD : settings.Type;
-  const DenoisedSurface denoised = DenoiseWithScheme(
-    mesh, points, isFixed, noise, scheme, type, parallel, progress.Part(0.05, 1.0));
+  DenoisedSurface denoised = DenoiseWithScheme(
+    mesh, points, isFixed, creases, noise, scheme, type, parallel, progress.Part(0.05, 1.0));
   const bool isCertain = !isEstimated && !correlated.MayBeRelief;
   const double tail = isCertain ? 1.0 : TailOfDisplacements(mesh, points, denoised.Moved);
   if (correlated.MayBeRelief && !(SmallestTail < tail && tail < LargestTail))
@@ -247,11 +263,17 @@ DenoisedPart DenoisePart(SurfacePart& part, const std::vector<char>& fixed,
     result.NoiseLevel = 0.0;
     result.Relief = noise * unit;
     result.ReliefLength = correlated.Length * unit;
+    result.ReliefEdges = correlated.Length / (std::sqrt(2.0) * h);
     return result;
   }
   result.Tail = isEstimated ? tail : 1.0;
   result.Type = settings.Type == SurfaceType::Automatic ? denoised.Type : settings.Type;
   result.CorrelationLength = correlated.Length * unit;
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    denoised.Moved.row(i) = points.row(i) +
+      WithinLimit(denoised.Moved.row(i) - points.row(i), settings.DisplacementLimit / unit);
+  }
   Points places = Points::Zero(rows, 3);
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
@@ -309,8 +331,10 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
   const double count = std::max<Index>(1, mesh.NumberOfVertices());
   double done = 0.0;
   double variance = 0.0;
-  for (SurfacePart& part : parts)
+  const std::vector<VertexPairs> creases = DivideCreases(mesh, parts, settings.Creases);
+  for (std::size_t p = 0; p < parts.size(); ++p)
   {
+    SurfacePart& part = parts[p];
     const std::size_t size = part.Vertices.size();
     std::vector<char> isFixed;
     for (std::size_t i = 0; i < size && !fixed.empty(); ++i)
@@ -327,7 +351,8 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
       partProgress.Report(1.0);
       continue;
     }
-    const DenoisedPart denoised = DenoisePart(part, isFixed, settings, parallel, partProgress);
+    const DenoisedPart denoised =
+      DenoisePart(part, isFixed, creases[p], settings, parallel, partProgress);
     found.CoarseParts += denoised.IsCoarse;
     found.VolumeChange = std::abs(denoised.VolumeChange) > std::abs(found.VolumeChange)
       ? denoised.VolumeChange
@@ -338,12 +363,16 @@ Points DenoiseSurface(const TriangleMesh& mesh, const Points& points,
     {
       found.Relief = denoised.Relief;
       found.ReliefLength = denoised.ReliefLength;
+      found.ReliefEdges = denoised.ReliefEdges;
     }
     type.Add(denoised.Type);
     const double level = denoised.NoiseLevel;
     for (std::size_t i = 0; i < size; ++i)
     {
-      const Eigen::RowVector3d step = denoised.Displacements.row(i);
+      const Eigen::RowVector3d step =
+        WithinLimit(denoised.Displacements.row(i), settings.DisplacementLimit);
+      found.LimitedVertices +=
+        settings.DisplacementLimit > 0.0 && step.norm() > (1.0 - 1e-9) * settings.DisplacementLimit;
       moved.row(part.Vertices[i]) += step;
       variance += level * level / count;
       found.MeanDisplacement += step.norm() / count;

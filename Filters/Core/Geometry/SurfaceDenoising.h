@@ -14,6 +14,15 @@ struct DenoisingSettings
   /// EstimateCorrelatedNoise()). Estimates below 0.005 mean edge lengths are taken for none.
   double NoiseLevel = 0.0;
   SurfaceType Type = SurfaceType::Automatic;
+  /// The deviation of the kernel that correlates the noise, in mean edge lengths of each part; 0: found.
+  /// Below 0.5 the noise is independent.
+  double NoiseLength = 0.0;
+  /// Edges whose triangles differ by this angle and more, in degrees, are creases; 0: none are.
+  double CreaseAngle = 0.0;
+  /// Others that are creases, by vertices of the mesh.
+  VertexPairs Creases;
+  /// No vertex moves farther, in the unit of the points; 0: without limit.
+  double DisplacementLimit = 0.0;
 };
 
 struct DenoisingReport
@@ -31,11 +40,13 @@ struct DenoisingReport
   /// The other vertices whose displacement is more than 10 times the noise level of their part:
   /// edges that were sharpened, or triangles so thin that their normals determine no place.
   Index FarVertices = 0;
+  Index LimitedVertices = 0; ///< those that would have moved farther than DisplacementLimit
   Index Parts = 0; ///< connected components
   /// What may be correlated noise, or relief, and stays: its deviation along the normals, in the unit of
   /// the points, and the length over which it is correlated. The largest of the parts; 0: none.
   double Relief = 0.0;
   double ReliefLength = 0.0;
+  double ReliefEdges = 0.0; ///< the deviation of its kernel, in mean edge lengths
   /// How much more the displacements along the normals differ than those of noise that is everywhere the
   /// same, where its level was estimated: the largest TailOfNormal() of the parts. Such noise has up to 1.1,
   /// relief 1.4 to 3, impulsive noise more.
@@ -84,7 +95,10 @@ struct DenoisingReport
 /// may be relief, its displacements are kept if they are normally distributed: the 0.95 quantile of noise
 /// is 0.9 to 1.15 of that of such numbers with its 0.3 quantile, and that of relief, which differs from
 /// place to place, 1.2 to 2.
-/// A given level of a surface of the type Organic is that of independent noise.
+/// A given level of a surface of the type Organic is that of independent noise, unless its length is
+/// given, too.
+///
+/// Vertices of creases stay, and normals on the two sides of one do not smooth each other.
 ///
 /// points: per vertex of the mesh; fixed: per vertex, nonzero for vertices that stay, may be empty.
 /// Throws Aborted.

@@ -73,6 +73,12 @@ def add_denoise_mesh(commands):
                         help="cad: smooth faces with sharp edges; organic: smooth shapes with "
                              "details, such as scans; automatic: cad unless details are lost "
                              "(default)")
+    common.positive(parser, "--noise-length", "N", "over how many edges points share their noise, as those of "
+                                                   "depth cameras do: the deviation of its kernel (default: "
+                                                   "measured)")
+    common.positive(parser, "--crease-angle", "DEG", "edges between triangles that differ by this angle and "
+                                                     "more, in degrees, stay as they are")
+    common.positive(parser, "--limit", "LENGTH", "no point moves farther")
     common.merge(parser)
     parser.add_argument("--fixed", metavar="FILE",
                         help="data in which vertices stay where the first column is above 0")
@@ -83,7 +89,8 @@ def denoise_mesh(arguments, report):
     check_output_name(arguments.output, surface.kind)
     options = {"noise_level": arguments.noise or 0.0,
                "surface_type": {"cad": "CAD"}.get(arguments.type, arguments.type.capitalize()),
-               **common.merging(arguments)}
+               **given(noise_length=arguments.noise_length, crease_angle=arguments.crease_angle,
+                       displacement_limit=arguments.limit), **common.merging(arguments)}
     if arguments.fixed is not None:
         with report.timed("read"):
             options["fixed"] = dict(inputs.read_marks(arguments.fixed, {"": surface}))[id(surface)]

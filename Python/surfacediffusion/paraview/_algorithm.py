@@ -366,7 +366,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     def find_arrays(self, block: Block, fields: Fields, indices: Iterable[int]) -> None:
         for index in indices:
             choice = self.choices.get(index, Choice())
-            fields.arrays[BY_INDEX[index]] = find_array(choice, index, *self.ARRAYS[index], block.input, fields)
+            name = "creases" if self.ARRAYS[index][0] == "CreaseArray" else BY_INDEX[index]
+            fields.arrays[name] = find_array(choice, index, *self.ARRAYS[index], block.input, fields)
 
     def check(self, found: list[tuple[Block, Fields]], problems: list[str]) -> None:
         """Append the problems of the settings with the arrays of each block."""
