@@ -171,6 +171,23 @@ public:
    */
   SURFACEDIFFUSION_SWITCH(ComputeError);
 
+  /**
+   * On: values that the others contradict are found and left out, those farther from a robust fit than
+   * four standard deviations of the others; up to half of the values may be wrong. For data on the
+   * surface, the output has the arrays `Outliers`, 1 or 0, and `Residuals`, at the points or cells with
+   * values, with the name of the data before. Not with Exact. Default: off; a warning counts such
+   * values then, with AutomaticSmoothing.
+   */
+  SURFACEDIFFUSION_SWITCH(Robust);
+
+  /**
+   * On: for data on the surface, the output has the arrays `LeaveOneOutResiduals`, how far each value
+   * is from the result without it at the same mu, and `LeaveOneOutErrors`, the standard errors of
+   * these, NaN for outliers, and `Residuals`, with the name of the data before. Not with Exact.
+   * Default: off.
+   */
+  SURFACEDIFFUSION_SWITCH(LeaveOneOut);
+
   ///@{
   /**
    * The condition at the boundary of the surface, see above. Default: Automatic. Free takes neither

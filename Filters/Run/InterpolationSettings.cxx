@@ -3,6 +3,7 @@
 #include "Run/InterpolationSettings.h"
 
 #include "Core/Models/Interpolation/InterpolationModel.h"
+#include "Core/Models/Interpolation/Outliers.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Run/CorrelatedNoise.h"
 #include "Run/FarPoints.h"
@@ -24,15 +25,24 @@ class FitOfKnownValues : public InterpolationModel
 {
 public:
   FitOfKnownValues(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
-    KnownValues known, const SmoothInterpolation::Settings& settings, const ParallelFor& parallel)
-    : InterpolationModel(
-        std::move(assembler), std::move(coefficients), std::move(known.Values), settings, parallel)
+    KnownValues known, const SmoothInterpolation::Settings& settings, const ParallelFor& parallel,
+    bool isRobust)
+    : InterpolationModel(std::move(assembler), std::move(coefficients), std::move(known.Values),
+        settings, parallel, isRobust)
     , AreSamples(known.AreSamples)
+    , Rows(std::move(known.Rows))
+    , NumberOfRows(known.NumberOfRows)
+    , Where(known.AreSamples ? Place::PerSample
+          : known.OnCells    ? Place::PerCell
+                             : Place::PerPoint)
     , NameOfSamples(std::move(known.SamplesName))
   {
   }
 
   const bool AreSamples;
+  const std::vector<Eigen::Index> Rows; ///< of the data, per value
+  const Eigen::Index NumberOfRows;
+  const Place Where; ///< the data are
   const std::string NameOfSamples;
 };
 
@@ -93,6 +103,20 @@ void WarnOfMisfit(
   }
 }
 
+/// Rows of values as rows of the data: where no value counts, `otherwise`.
+Output PerGivenRow(const char* name, const FitOfKnownValues& model, OutputType type,
+  const Values& rows, double otherwise)
+{
+  Values all = Values::Constant(model.NumberOfRows, rows.cols(), otherwise);
+  for (std::size_t i = 0; i < model.Rows.size(); ++i)
+  {
+    all.row(model.Rows[i]) = rows.row(static_cast<Eigen::Index>(i));
+  }
+  Output output{ name, model.Where, type, std::move(all) };
+  output.IsBesideResult = true;
+  return output;
+}
+
 void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
 {
   WarnOf(found.ContradictingPlaces, " place has different values: their weighted mean counts",
@@ -136,6 +160,61 @@ void WarnOfFit(const SmoothInterpolation::Result& found, RunResult& result)
       << ": the set of points at the bounds did not settle, or exact values inside triangles "
          "exclude "
          "each other; the result is within the range but not the smoothest one");
+  }
+}
+
+/// Of those left out, or of those that `Robust` would leave out.
+void WarnOfOutliers(const InterpolationSettings& settings, const InterpolationModel& model,
+  const Values& residuals, RunResult& result)
+{
+  if (settings.Robust)
+  {
+    WarnOf(static_cast<Index>(model.Outliers().sum()),
+      " value is contradicted by others and left out",
+      " values are contradicted by others and left out", result);
+    return;
+  }
+  for (Eigen::Index c = 0; c < residuals.cols() && settings.AutomaticSmoothing; ++c)
+  {
+    if (const Index count = CountOutliers(model.Given(), residuals, c))
+    {
+      result.WarnOnce(Sentence() << count << (count == 1 ? " value is" : " values are")
+                                 << " farther from the result than four standard deviations of the "
+                                    "others (to leave outliers out, turn "
+                                 << Word::Setting("Robust") << " on)");
+      return;
+    }
+  }
+}
+
+/// The residuals, which values were left out, and what the result without each of them is.
+void AddOfValues(const InterpolationSettings& settings, const FitOfKnownValues& model,
+  const Values& residuals, double unit, std::vector<Output>& outputs)
+{
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const auto add = [&](const char* name, const Values& rows)
+  { outputs.push_back(PerGivenRow(name, model, OutputType::Double, rows, none)); };
+  if (settings.Robust)
+  {
+    outputs.push_back(PerGivenRow("Outliers", model, OutputType::Integer, model.Outliers(), 0.0));
+  }
+  if (settings.Robust || settings.LeaveOneOut)
+  {
+    add("Residuals", unit * residuals);
+  }
+  if (settings.LeaveOneOut)
+  {
+    const SmoothInterpolation::Result& found = model.Found();
+    Values left = 1.0 - found.Leverage.array().min(1.0 - 1e-9);
+    add("LeaveOneOutResiduals", unit * residuals.cwiseQuotient(left));
+    for (Eigen::Index c = 0; c < left.cols(); ++c)
+    {
+      const double noise = unit * found.Columns[static_cast<std::size_t>(c)].NoiseLevel;
+      left.col(c) =
+        (noise / (left.col(c).array() * model.Given().Weights.array()).sqrt()).cwiseMax(0.0);
+      left.col(c) = (model.Outliers().col(c).array() != 0.0).select(none, left.col(c));
+    }
+    add("LeaveOneOutErrors", left);
   }
 }
 
@@ -187,6 +266,20 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
                    "infinite where they leave the slope open. On cells they are the means of the "
                    "corners, upper bounds." },
     this->ComputeError);
+  visitor.Switch(
+    { "Robust", "",
+      "On: values that the others contradict are found and left out: those farther from a "
+      "robust fit than four standard deviations of the others. Up to half of "
+      "the values may be wrong.",
+      "Exact=0" },
+    this->Robust);
+  visitor.Switch(
+    { "LeaveOneOut", "",
+      "Add, for each value, how far it is from the result without it, at the same mu, and "
+      "the standard error of this difference: how maps are checked. Not for samples in "
+      "VTK.",
+      "Exact=0" },
+    this->LeaveOneOut);
   visitor.Choice({ "Boundary", "",
                    "The condition at the boundary of the surface. Automatic: Free, but Natural "
                    "with diffusivities other than 1 or IntrinsicDelaunay and on closed connected "
@@ -272,6 +365,7 @@ SmoothInterpolation::Settings InterpolationSettings::MakeCoreSettings(const Unit
   settings.NoiseLevel = this->NoiseLevel / units.ValueUnit;
   settings.KeepRange = this->KeepRange;
   settings.ComputeError = this->ComputeError;
+  settings.ComputeLeverage = this->LeaveOneOut && !this->Exact;
   return settings;
 }
 
@@ -297,7 +391,7 @@ std::unique_ptr<Model> InterpolationSettings::Make(ModelInputs& inputs, RunResul
     : CornerWeights(this->AlongDiffusivity * isotropic);
   return std::make_unique<FitOfKnownValues>(inputs.Surface.SharedAssembler(),
     std::move(coefficients), std::move(known), this->MakeCoreSettings(inputs.Units),
-    inputs.Parallel);
+    inputs.Parallel, this->Robust && !this->Exact);
 }
 
 std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResult& result) const
@@ -349,6 +443,12 @@ std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResu
     error.Elsewhere = none;
     error.DataName = model.NameOfSamples;
     outputs.push_back(std::move(error));
+  }
+  if (!this->Exact)
+  {
+    const Values residuals = ResidualsOf(model.Given(), model.State());
+    WarnOfOutliers(*this, model, residuals, result);
+    AddOfValues(*this, model, residuals, unit, outputs);
   }
   const auto columns = static_cast<Eigen::Index>(found.Columns.size());
   Values rows(columns, 6);

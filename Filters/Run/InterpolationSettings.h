@@ -18,6 +18,8 @@ struct InterpolationSettings : RunSettings
   double Smoothing = 1.0;
   bool KeepRange = false;
   bool ComputeError = false;
+  bool Robust = false;
+  bool LeaveOneOut = false;
   RimCondition Boundary = RimCondition::Automatic;
   double MaximumDistance = 0.0;
   double AlongDiffusivity = 1.0;

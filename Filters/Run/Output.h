@@ -24,6 +24,7 @@ enum class Place
   PerCurvePoint,
   PerCurve,
   Column, ///< of a table
+  PerSample, ///< of the values at points in space; not written by the classes for VTK
   Number ///< nothing: a number of the run, or a matrix of numbers
 };
 

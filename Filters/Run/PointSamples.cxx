@@ -91,6 +91,8 @@ public:
     return values;
   }
 
+  std::vector<Eigen::Index> TakeRows() { return std::move(this->Rows); }
+
   /// Of a row of the data.
   double WeightOf(std::size_t row) const
   {
@@ -344,6 +346,8 @@ KnownValues FindKnownValues(
     known.SamplePlaces.conservativeResize(
       static_cast<Eigen::Index>(known.SampleDistances.size()), 3);
     known.Values = collector.Take(samples.Given);
+    known.Rows = collector.TakeRows();
+    known.NumberOfRows = samples.Given.rows();
     return known;
   }
   // With data on cells, factors may still be on points.
@@ -377,6 +381,9 @@ KnownValues FindKnownValues(
     }
   }
   known.Values = collector.Take(fields.Data.Values);
+  known.Rows = collector.TakeRows();
+  known.NumberOfRows = fields.Data.Values.rows();
+  known.OnCells = fields.Data.OnCells;
   return known;
 }
 

@@ -50,6 +50,9 @@ struct KnownValues
   Points SamplePlaces; ///< of the samples that have a value
   std::vector<double> SampleDistances; ///< their distances from the surface, in coordinate units
   Index Outside = 0; ///< samples in excluded triangles
+  std::vector<Eigen::Index> Rows; ///< of the data, per value
+  Eigen::Index NumberOfRows = 0; ///< of the data
+  bool OnCells = false; ///< the data are
   std::string SamplesName; ///< empty unless they are samples
   bool AreSamples = false;
 };

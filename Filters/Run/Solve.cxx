@@ -22,8 +22,8 @@ namespace
 const std::map<std::string, std::string> NamesOfArrays = { { "InputArray", "Data" },
   { "DataTermArray", "Data" }, { "MaskArray", "Mask" }, { "DirectionArray", "Directions" },
   { "FixedArray", "Fixed" }, { "DiffusionRateArray", "Rates" },
-  { "FidelityArray", "FidelityFactors" }, { "SeedArray", "Seeds" }, { "SourceArray", "Data" },
-  { "SpeedArray", "Speeds" }, { "SourceTimes", "StartTimes" } };
+  { "FidelityArray", "FidelityFactors" }, { "SeedArray", "Seeds" }, { "CreaseArray", "Seeds" },
+  { "SourceArray", "Data" }, { "SpeedArray", "Speeds" }, { "SourceTimes", "StartTimes" } };
 
 /// work(), whose errors are in the words of this interface.
 template <typename Work>
@@ -176,6 +176,7 @@ public:
           solution.Numbers[output.Name] = output.Rows;
           break;
         case Place::Column:
+        case Place::PerSample:
         case Place::PerCurvePoint:
           solution.Columns[output.Name] = output.Rows;
           break;

@@ -99,7 +99,7 @@ inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<C
                                                     &MakeSurfaceRun<CurvatureRun>, "", false,
                                                     "mask roi" },
   { "denoise_mesh", &MakeDefaults<DenoisingRunSettings>, &MakeSurfaceRun<DenoisingRun>, "", false,
-    "fixed" },
+    "fixed creases" },
   { "derivatives", &MakeDefaults<DerivativesSettings>, &MakeSurfaceRun<DerivativesRun>, "values",
     true, "mask roi" },
   { "direction_field", &MakeDefaults<DirectionFieldSettings>, &MakeSurfaceRun<DirectionFieldRun>,
@@ -267,7 +267,8 @@ SmoothnessEstimate EstimateFWHM(
 Values SmoothToFWHM(const Points& points, const Triangles& triangles, const Values& values,
   double fwhm, const Values& noise = Values(0, 0), const ParallelFor& parallel = SerialFor());
 
-/// The surface without noise; points of data.Fixed stay: see vtkSurfaceDenoisingFilter.
+/// The surface without noise; points of data.Fixed, and creases by data.Seeds, stay: see
+/// vtkSurfaceDenoisingFilter.
 Solution DenoiseMesh(const Points& points, const Triangles& triangles,
   DenoisingRunSettings settings = {}, const SurfaceData& data = {},
   const ParallelFor& parallel = SerialFor());

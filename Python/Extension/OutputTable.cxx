@@ -62,6 +62,8 @@ const char* NameOf(const Output& output, bool onCells)
       return "curves";
     case Place::Column:
       return "column";
+    case Place::PerSample:
+      return "samples";
     case Place::Number:
       return "number";
     default:

@@ -25,8 +25,8 @@ from ._result import (
 from ._run import (
     Input, Progress, ProgressReporter, Runner, States, find_result_type, take_old_switch, warn,
 )
-from ._settings import settings_of, spell_documentation
-from ._surface import SurfaceLike, as_numbers, as_surface, left_out, place, require_shape
+from ._settings import settings_of, shorten, spell_documentation
+from ._surface import Surface, SurfaceLike, as_numbers, as_surface, left_out, on_points, place, require_shape
 
 __all__ = [
     "curvature", "denoise_mesh", "derivatives", "direction_field", "harmonic_map", "heat", "interpolate",
@@ -558,11 +558,25 @@ def harmonic_map(
     """
 
 
+def _find_creases(surface: Surface, creases: Any) -> Any:
+    """Labels of points or faces; edges, (k, 2), are those between the points that they have."""
+    if creases is None or np.ndim(creases) != 2:
+        return creases
+    edges = as_numbers("creases", creases)
+    require_shape("creases", edges, edges.shape[1] == 2, "(k, 2), the two points of each edge")
+    if edges.dtype.kind not in "iu" or ((edges < 0) | (edges >= surface.n_points)).any():
+        raise ValueError(f"creases is {shorten(creases)}; allowed: rows of points, 0 to {surface.n_points - 1}")
+    marks = np.zeros(surface.n_points)
+    marks[edges] = 1.0
+    return on_points(marks)
+
+
 @_with_settings
 def denoise_mesh(
     surface: SurfaceLike,
     *,
     fixed: ArrayLike | None = None,
+    creases: ArrayLike | None = None,
     progress: Progress = False,
     **properties: Any,
 ) -> MeshDenoisingResult:
@@ -601,6 +615,10 @@ def denoise_mesh(
     {surface}
     fixed : array_like, shape (n,) or (m,), optional
         Nonzero points, and the points of nonzero faces, stay where they are.
+    creases : array_like of int, shape (m,), (n,) or (k, 2), optional
+        Edges that stay as they are, and whose sides are smoothed apart: those between faces of different
+        labels, such as those of the faces of a CAD model; between points of nonzero labels; or
+        given by their two points.
     {progress}
 
     {settings}
@@ -637,7 +655,9 @@ def denoise_mesh(
     take_old_switch(properties, "denoise_mesh", "full_output", "the result is always returned")
     surface = as_surface(surface)
     outputs, found = run_once(
-        "denoise_mesh", Input(surface, fixed=fixed), properties, {"FixedArray": "fixed"}, progress)
+        "denoise_mesh",
+        Input(surface, fixed=fixed, creases=_find_creases(surface, creases)), properties,
+        {"FixedArray": "fixed", "CreaseArray": "creases"}, progress)
     result: MeshDenoisingResult = make_result(MeshDenoisingResult, outputs, found, surface)
     words = settings_of("denoise_mesh")["surface_type"].words
     return replace(result, surface_type=words[int(result.surface_type)])
@@ -713,6 +733,18 @@ def segment(
     return _find("segment", SegmentationResult, given, properties, progress)
 
 
+def _places_of_values(surface: Surface, values: Any, points: Any, on_faces: bool | None) -> Any:
+    """Where values are known, as sources of a distance: coordinates, flags of points, or middles of faces."""
+    array = np.asarray(values)
+    known = ~np.isnan(array.reshape(len(array), -1)).any(axis=1) if array.dtype.kind == "f" else (
+        np.ones(len(array), dtype=bool))
+    if points is not None:
+        return np.asarray(points, dtype=np.float64)[known]
+    if not on_faces:
+        return known
+    return np.array([surface.points[face].mean(axis=0) for face, is_known in zip(surface.faces, known) if is_known])
+
+
 @_with_settings
 def interpolate(
     surface: SurfaceLike,
@@ -785,7 +817,8 @@ def interpolate(
     result = _find("interpolate", InterpolationResult, given, properties, progress)
     shape = (-1,) if np.ndim(values) == 1 else (len(result.values), -1)
     return replace(result, values=result.values.reshape(shape),
-                   error=result.error.reshape(shape) if result.error.size else result.error)
+                   error=result.error.reshape(shape) if result.error.size else result.error,
+                   outliers=result.outliers != 0, _places=_places_of_values(surface, values, points, on_faces))
 
 
 @_with_settings

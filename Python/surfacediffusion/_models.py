@@ -10,7 +10,7 @@ from typing import Any, Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ._result import RegionBoundary
+from ._result import LeaveOneOut, RegionBoundary
 from ._run import Given, find_result_type
 from ._settings import shorten, snake_case
 from ._surface import Surface, as_data, as_factors, as_numbers, find_on_faces, left_out, require_shape
@@ -24,7 +24,7 @@ ARRAYS = {"InputArray": "values", "MaskArray": "mask", "DirectionArray": "direct
 class Output:
     """What a model returns, an entry of the list of a run: see Run/Output.h.
 
-    place: "points", "faces", "curve points", "curves", "column" or "number". role: "scalars", "vectors",
+    place: "points", "faces", "curve points", "curves", "column", "samples" or "number". role: "scalars", "vectors",
     "coordinates" or "". is_result, is_beside_result: named after the data. rows: an array with a row per
     point, face, entry of a column, point of a curve, or of a matrix."""
 
@@ -108,6 +108,10 @@ def make_result(
         named = {output.name: output.values for output in outputs}
         columns = [named[name] for name in result_class.VALUES]
         attributes["values"] = columns[0] if len(columns) == 1 else np.column_stack(columns)
+    left_out = {output.name: output.values for output in outputs if output.name.startswith("LeaveOneOut")}
+    if left_out:
+        attributes["leave_one_out"] = LeaveOneOut(
+            left_out["LeaveOneOutResiduals"], left_out["LeaveOneOutErrors"])
     attributes["curves"] = on_curves.get("Curves", [])
     attributes["boundaries"] = [
         RegionBoundary((int(pair[0]), int(pair[1])), points, float(length)) for points, pair, length

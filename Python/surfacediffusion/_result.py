@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -16,9 +17,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ArrayResult", "ConductionVelocity", "CurvatureResult", "DerivativesResult", "DiffusionResult",
-    "EdgeResult", "HarmonicMapResult", "HelmholtzParts", "InterpolationResult", "MeshDenoisingResult", "ModelResult", "RegionBoundary",
-    "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
+    "EdgeResult", "HarmonicMapResult", "HelmholtzParts", "InterpolationResult", "LeaveOneOut",
+    "MeshDenoisingResult", "ModelResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
 ]
+
+
+#: Of the normal distribution: so many deviations on each side hold 90 %.
+_BAND_90 = 1.6448536269514722
 
 
 class ArrayResult:
@@ -391,6 +396,13 @@ class RegionBoundary:
     length: float
 
 
+class LeaveOneOut(NamedTuple):
+    """What a result without each of the given values says of it."""
+
+    residuals: NDArray[np.float64]  #: the value minus that result
+    errors: NDArray[np.float64]  #: the standard errors of these
+
+
 @dataclass(frozen=True)
 class InterpolationResult(ModelResult):
     """The result of :func:`interpolate`: a :class:`ModelResult` whose `values` are those of the smooth
@@ -412,6 +424,19 @@ class InterpolationResult(ModelResult):
     noise_level : ndarray, shape (k,)
         The standard deviation of values with weight 1, given or estimated; of several connected parts
         the root of its mean square.
+    lower, upper : ndarray
+        With ``compute_error=True`` the band of 1.645 standard errors around the values, which holds 90 %.
+    outliers : ndarray of bool, with a row per given value
+        With ``robust=True``: True for values that the others contradict, and that were left out.
+    residuals : ndarray, likewise
+        With ``robust=True`` or ``leave_one_out=True`` the given values minus the result there; NaN where
+        no value counts.
+    leave_one_out : LeaveOneOut
+        With ``leave_one_out=True`` the pair of the residuals of the results without each value, at the same
+        mu, and of their standard errors, NaN for outliers.
+    distance_to_data : ndarray, shape (n,)
+        The distance of each point along the surface from the nearest value, see :func:`distance`; found when
+        it is asked for.
     number_of_values : int
         The values that were used.
     number_of_far_values : int
@@ -426,10 +451,29 @@ class InterpolationResult(ModelResult):
     misfit: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     degrees_of_freedom: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     noise_level: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
+    outliers: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, dtype=bool), repr=False)
+    residuals: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
+    leave_one_out: LeaveOneOut = field(
+        default_factory=lambda: LeaveOneOut(np.empty(0), np.empty(0)), repr=False)
     number_of_values: int = 0
     number_of_far_values: int = 0
     median_distance: float = 0.0
     largest_distance: float = 0.0
+    _places: Any = field(default=None, repr=False)  # of the values, sources of a distance
+
+    @functools.cached_property
+    def distance_to_data(self) -> NDArray[np.float64]:
+        from ._distance import distance
+
+        return distance(self.surface, self._places)
+
+    @property
+    def lower(self) -> NDArray[np.float64]:
+        return self.values - _BAND_90 * self.error
+
+    @property
+    def upper(self) -> NDArray[np.float64]:
+        return self.values + _BAND_90 * self.error
 
 
 @dataclass(frozen=True)

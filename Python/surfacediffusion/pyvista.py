@@ -207,20 +207,21 @@ def interpolate(
 
 
 def denoise_mesh(
-    mesh: Any, *, fixed: str | None = None, return_result: bool = False, progress: Progress = False,
-    **properties: Any,
+    mesh: Any, *, fixed: str | None = None, creases: str | None = None, return_result: bool = False,
+    progress: Progress = False, **properties: Any,
 ) -> Any:
     """Remove the noise of the points of the mesh, and keep its sharp edges.
 
-    fixed: point or cell array; points, and the points of cells, with a nonzero value stay. The method
+    fixed: point or cell array; points, and the points of cells, with a nonzero value stay. creases: cell
+    array of labels, between which edges stay, or point array, nonzero at their points. The method
     and all other keywords are described in help(surfacediffusion.denoise_mesh). The result has moved
     points and the point array Displacement (n, 3); normals are computed again, and tangents are dropped.
     Each block of a MultiBlock has its own noise level. return_result:
     if True, the function returns a pair: the mesh, and the MeshDenoisingResult, of a MultiBlock the
     list of them.
     """
-    return _on_each("denoise_mesh", mesh, lambda block: block.find_all(fixed=fixed), return_result, progress,
-                    properties)
+    return _on_each("denoise_mesh", mesh, lambda block: block.find_all(fixed=fixed, creases=creases),
+                    return_result, progress, properties)
 
 
 def relief(

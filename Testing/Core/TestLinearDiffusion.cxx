@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/DirichletEnergy.h"
+#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
 #include "Meshes.h"

@@ -28,7 +28,7 @@ if not VTK_PYTHON:
 
 #: Index of each input array of the filters.
 INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "hints": 2, "fixed": 3,
-         "rates": 4, "fidelity": 5, "seeds": 6, "terms": 7, "marked": 0, "speed": 8}
+         "rates": 4, "fidelity": 5, "seeds": 6, "creases": 6, "terms": 7, "marked": 0, "speed": 8}
 
 
 #: The arguments of the functions for PyVista meshes that have other names.
@@ -208,6 +208,7 @@ class SameBits(unittest.TestCase):
              {"NumberOfRegions": 3, "StopTolerance": 0.01}),
             ("segment", {"terms": self.columns[:, :2], "seeds": np.where(self.mask, 2.0, 0.0)}, {"RefineTo": 0.06}),
             ("interpolate", {"values": nan, "mask": some_fixed}, {"ComputeError": True}),
+            ("interpolate", {"values": nan}, {"Robust": True, "LeaveOneOut": True}),
             ("interpolate", {"values": np.where(np.arange(len(nan)) % 40 == 0, nan, np.nan),
                              "fidelity": 1.0 + self.points[:, 2] ** 2},
              {"Exact": True, "CorrelationLength": 2.0}),
@@ -219,7 +220,9 @@ class SameBits(unittest.TestCase):
             ("harmonic_map", {"vectors": self.normals[:, [1, 2, 0]]}, {"TangentTo": "Surface"}),
             ("harmonic_map", {"vectors": colours[:, :3]}, {}),
             ("denoise_mesh", {"fixed": self.mask}, {}),
-            ("denoise_mesh", {}, {"NoiseLevel": 0.01, "SurfaceType": "CAD"}),
+            ("denoise_mesh", {"creases": self.mask}, {"NoiseLevel": 0.01, "SurfaceType": "CAD"}),
+            ("denoise_mesh", {}, {"NoiseLevel": 0.02, "NoiseLength": 1.5, "CreaseAngle": 40.0,
+                                  "DisplacementLimit": 0.01}),
             ("turing_texture", {}, {"NumberOfTimeSteps": 30, "RandomSeed": 4, "ColorOutput": True}),
             ("turing_texture", {"initial": np.abs(self.columns[:, :2]), "mask": self.mask, "fixed": some_fixed},
              {"NumberOfTimeSteps": 5}),
@@ -373,6 +376,10 @@ class SameBits(unittest.TestCase):
             found["history Component"] = np.arange(len(result.smoothing))
             if properties.get("ComputeError"):
                 found["valuesError"] = result.error
+            if properties.get("Robust"):
+                found["valuesOutliers"] = result.outliers.astype(np.int32)
+                found["valuesResiduals"] = result.residuals
+                found["valuesLeaveOneOutResiduals"], found["valuesLeaveOneOutErrors"] = result.leave_one_out
             expected.pop("history Block")
         if "Period" in properties:
             found["valuesCoherence"] = result.coherence

@@ -110,12 +110,13 @@ DEFAULTS = {
     "vtkSurfaceInterpolationFilter": {
         **MODEL, "CorrelationLength": 0.0, "Exact": False, "AutomaticSmoothing": True,
         "NoiseLevel": 0.0, "Smoothing": 1.0, "KeepRange": False, "ComputeError": False,
+        "Robust": False, "LeaveOneOut": False,
         "PointValueArray": "", "PointWeightArray": "", "Boundary": "Automatic",
         "MaximumDistance": 0.0, "AlongDiffusivity": 1.0,
         "AcrossDiffusivity": 1.0, "ResultOnCells": True},
     "vtkSurfaceDenoisingFilter": {
         **SURFACE, "ResultArrayName": "Displacement", "NoiseLevel": 0.0,
-        "SurfaceType": "Automatic"},
+        "NoiseLength": 0.0, "SurfaceType": "Automatic", "CreaseAngle": 0.0, "DisplacementLimit": 0.0},
     "vtkSurfaceReliefFilter": {
         **SURFACE, "ResultArrayName": "ReliefHeight", "Height": 1.0, "Base": 0.0, "Levels": "Smooth",
         "Threshold": 0.5, "Flank": 0.0, "Overhang": -1.0, "UpDirection": (0.0, 0.0, 1.0)},

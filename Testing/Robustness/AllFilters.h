@@ -417,6 +417,13 @@ inline std::vector<FilterKind> AllFilters()
       }),
     Slow(MakeKind<Spline>("InterpolationWeighted", "fInterpolated", 1,
       [](Spline* f) { SetInputArray(f, 5, "weights"); })),
+    MakeKind<Spline>("InterpolationRobust", "fInterpolated", 1,
+      [](Spline* f)
+      {
+        SetInputArray(f, 1, "mask");
+        f->RobustOn();
+        f->LeaveOneOutOn();
+      }),
     Slow(MakeKind<Spline>("InterpolationOfCells", "cInterpolated", 1,
       [](Spline* f) { SetInputArray(f, 0, "c", true); })),
     { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },
@@ -428,6 +435,14 @@ inline std::vector<FilterKind> AllFilters()
       {
         f->SetNoiseLevel(0.02);
         f->SetSurfaceTypeToOrganic();
+      }),
+    MakeKind<vtkSurfaceDenoisingFilter>("DenoisingCorrelated", "Displacement", 0,
+      [](vtkSurfaceDenoisingFilter* f)
+      {
+        f->SetNoiseLevel(0.03);
+        f->SetNoiseLength(1.5);
+        f->SetDisplacementLimit(0.02);
+        SetInputArray(f, 6, "mask");
       }),
     MakeKind<vtkSurfaceReliefFilter>("Relief", "ReliefHeight", 0,
       [](vtkSurfaceReliefFilter* f)

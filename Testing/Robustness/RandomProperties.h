@@ -279,6 +279,8 @@ inline List OfInterpolation()
     RANDOM_PROPERTY(F, CorrelationLength, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, KeepRange, dice.Flip(4)),
     RANDOM_PROPERTY(F, ComputeError, dice.Flip()),
+    RANDOM_PROPERTY(F, Robust, dice.Flip(4)),
+    RANDOM_PROPERTY(F, LeaveOneOut, dice.Flip(4)),
     RANDOM_PROPERTY(F, Boundary, Choice(dice, 3)),
     RANDOM_PROPERTY(F, MaximumDistance, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
@@ -458,7 +460,10 @@ inline List OfDenoising()
   using F = vtkSurfaceDenoisingFilter;
   return {
     RANDOM_PROPERTY(F, NoiseLevel, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, NoiseLength, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, SurfaceType, Choice(dice, 3)),
+    RANDOM_PROPERTY(F, CreaseAngle, dice.Flip() ? 0.0 : 180.0 * dice.Unit()),
+    RANDOM_PROPERTY(F, DisplacementLimit, ZeroOrPositive(dice)),
   };
 }
 

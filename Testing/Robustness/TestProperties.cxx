@@ -124,8 +124,9 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
     needed["KeepCellDetail"] = [](vtkPolyDataAlgorithm* f) { SetInputArray(f, 0, "c", true); };
   needed["vtkSurfaceDenoisingFilter SurfaceType"] =
     needed["vtkSurfaceDenoisingFilter MergeCoincidentPoints"] =
-      needed["vtkSurfaceDenoisingFilter MergeTolerance"] =
-        With<Denoising>([](Denoising* f) { f->SetNoiseLevel(0.1); });
+      needed["vtkSurfaceDenoisingFilter MergeTolerance"] = needed["NoiseLength"] =
+        needed["CreaseAngle"] = needed["DisplacementLimit"] =
+          With<Denoising>([](Denoising* f) { f->SetNoiseLevel(0.1); });
   for (const char* name : { "Threshold", "Flank" })
   {
     needed[name] = With<vtkSurfaceReliefFilter>(

@@ -67,11 +67,19 @@ void SubtractProduct(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::
 
 } // namespace
 
-Vector SupernodalFactor::InverseDiagonal(
-  const ParallelFor& parallel, const ProgressMonitor& progress) const
+Vector SupernodalFactor::InverseDiagonal(const ParallelFor& parallel,
+  const ProgressMonitor& progress, std::vector<InverseEntry>* others) const
 {
   const Supernodes& nodes = this->Nodes;
   const Index count = nodes.Count();
+  std::vector<std::vector<InverseEntry*>> othersOf(static_cast<std::size_t>(others ? count : 0));
+  for (std::size_t e = 0; others && e < others->size(); ++e)
+  {
+    InverseEntry& entry = (*others)[e];
+    const Index earlier = std::min(nodes.Place[entry.Row], nodes.Place[entry.Column]);
+    const auto after = std::upper_bound(nodes.First.begin(), nodes.First.begin() + count, earlier);
+    othersOf[static_cast<std::size_t>(after - nodes.First.begin()) - 1].push_back(&entry);
+  }
   std::vector<Eigen::MatrixXd> inverse(count); // in the rows of a supernode: pivots, rows below
   Vector diagonal(static_cast<Eigen::Index>(nodes.Place.size()));
   double done = 0.0;
@@ -163,6 +171,19 @@ Vector SupernodalFactor::InverseDiagonal(
     for (Index p = 0; p < k; ++p)
     {
       diagonal[nodes.RowAt[first + p]] = own(p, p);
+    }
+    const auto inRows = [&](Index row) -> Index
+    {
+      const Index at = nodes.Place[row];
+      return at < first + k ? at - first
+                            : k +
+          static_cast<Index>(
+            std::lower_bound(nodes.Below(s), nodes.Below(s) + r, at) - nodes.Below(s));
+    };
+    for (std::size_t e = 0; others && e < othersOf[s].size(); ++e)
+    {
+      InverseEntry& entry = *othersOf[s][e];
+      entry.Value = all(inRows(entry.Row), inRows(entry.Column));
     }
     if (nodes.ChildrenBegin[s] < nodes.ChildrenBegin[s + 1])
     {

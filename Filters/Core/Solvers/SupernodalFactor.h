@@ -14,6 +14,14 @@
 namespace SurfaceDiffusion
 {
 
+/// An entry of the inverse of a matrix.
+struct InverseEntry
+{
+  Index Row = 0;
+  Index Column = 0;
+  double Value = 0.0;
+};
+
 /// P A P^T = L L^T for a symmetric positive definite matrix A by the multifrontal method (I. Duff,
 /// J. Reid, ACM Trans. Math. Softw. 9, 1983) in dense tiles. All threads take part, and no bit
 /// depends on their number. SparseFactor has the same numbers in the order in which substitution of
@@ -40,8 +48,10 @@ public:
 
   /// Diagonal entries of A^-1 by selected inversion (K. Takahashi, J. Fagan, M. Chin, PICA 1973):
   /// the entries of the inverse in the pattern of L follow from each other, from the last row on.
-  Vector InverseDiagonal(
-    const ParallelFor& parallel, const ProgressMonitor& progress = ProgressMonitor()) const;
+  /// others: entries off the diagonal where A has one, which are set.
+  Vector InverseDiagonal(const ParallelFor& parallel,
+    const ProgressMonitor& progress = ProgressMonitor(),
+    std::vector<InverseEntry>* others = nullptr) const;
 
   const Supernodes& Structure() const { return this->Nodes; }
   /// The diagonal entry of L of pivot p of supernode s.

@@ -73,6 +73,8 @@ def add_interpolate(commands):
                     "the coordinates (default: it continues smoothly)")
     parser.add_argument("--flat", action="store_true",
                         help="become flat at the boundary of the surface, in place of continuing slopes")
+    parser.add_argument("--robust", action="store_true",
+                        help="find values that the others contradict, and leave them out")
     parser.add_argument("--keep-range", action="store_true",
                         help="stay between the smallest and the largest value")
     common.positive(parser, "--within", "D",
@@ -100,7 +102,7 @@ def interpolate(arguments, report):
             surface.solver, values, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
             correlation_length=arguments.length or 0.0, boundary="Natural" if arguments.flat else "Automatic",
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
-            compute_error=errors is not None, progress=progress, **given(smoothing=arguments.smoothing),
+            compute_error=errors is not None, robust=arguments.robust, progress=progress, **given(smoothing=arguments.smoothing),
             **common.merging(arguments))
     if places is not None and surface.center.any() and result.median_distance > result.mean_edge_length:
         report.warn(f"{surface.path} has FreeSurfer's coordinates, and points in the scanner's are larger by its "
@@ -112,6 +114,8 @@ def interpolate(arguments, report):
         columns=[{"name": name, "smoothing": number(mu), "misfit": number(misfit),
                   "degrees_of_freedom": number(freedom), "noise": number(noise)}
                  for name, (mu, misfit, freedom, noise) in zip(names, rows)])
+    if arguments.robust:
+        report.facts["outliers"] = np.flatnonzero(result.outliers.reshape(len(result.outliers), -1).any(axis=1)).tolist()
     with report.timed("write"):
         target.save(arguments.output, [result.values.astype(np.float32)])
         if errors is not None:

@@ -5,6 +5,8 @@
 #include "Core/Models/Interpolation/SmoothInterpolation.h"
 #include "Core/Models/Model.h"
 
+#include <memory>
+
 namespace SurfaceDiffusion
 {
 
@@ -12,10 +14,10 @@ namespace SurfaceDiffusion
 class InterpolationModel : public StateModel
 {
 public:
-  /// data: at least one value.
+  /// data: at least one value. isRobust: values that others contradict are left out, see FindOutliers().
   InterpolationModel(std::shared_ptr<const Assembler> assembler, CornerWeights coefficients,
     ScatteredValues data, const SmoothInterpolation::Settings& settings,
-    const ParallelFor& parallel = SerialFor());
+    const ParallelFor& parallel = SerialFor(), bool isRobust = false);
 
   /// Throws as SmoothInterpolation::Fit().
   StepReport Advance(const ProgressMonitor& progress) override;
@@ -34,10 +36,16 @@ public:
     return this->IsFitted ? this->Last : this->None;
   }
   const ScatteredValues& Given() const { return this->Data; }
+  /// d x k, 1 for values that were left out.
+  const Values& Outliers() const { return this->LeftOut; }
 
 private:
+  void FitWithoutOutliers(const ProgressMonitor& progress);
+
   SmoothInterpolation Method;
+  std::unique_ptr<const SmoothInterpolation> Search; ///< of outliers; null: all values count
   ScatteredValues Data;
+  Values LeftOut;
   SmoothInterpolation::Result Last, None;
   bool IsFitted = false; ///< the state is that of Last
   double EnergyOfStart = 0.0;

@@ -82,7 +82,8 @@ void SmoothInterpolation::FitSmoothly(
   }
   work.Spectrum = start.Eigenvectors().cols() > 0 ? &start : nullptr;
   // One factor serves all columns that need no other; those first, so that it is there still.
-  const bool needsFactor = this->Options.ComputeError || this->Options.KeepRange;
+  const bool needsFactor =
+    this->Options.ComputeError || this->Options.KeepRange || this->Options.ComputeLeverage;
   std::vector<Eigen::Index> others;
   double done = 0.0;
   const auto at = [&](double part)
@@ -134,6 +135,23 @@ void SmoothInterpolation::FitSmoothly(
   }
 }
 
+/// Of the fit that is prepared, per place.
+Vector SmoothInterpolation::FindLeverage(const Work& work, const ProgressMonitor& progress)
+{
+  const RepeatedValues& rows = work.Rows;
+  Vector leverage(rows.Count());
+  if (work.Spectrum)
+  {
+    leverage = work.Spectrum->Eigenvectors().cwiseAbs2() *
+      work.Spectrum->Eigenvalues(work.Fit.GetSmoothing());
+  }
+  else
+  {
+    leverage = rows.Weights.cwiseProduct(work.Fit.VarianceAtPoints(progress));
+  }
+  return leverage.cwiseMax(0.0).cwiseMin(1.0);
+}
+
 /// With the measures of the columns in place. Returns false, and gives nothing, if the factor of
 /// another mu does not resolve this one.
 bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index first,
@@ -159,6 +177,14 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
   {
     isOpen = this->FindOpen(work);
     result.HasInfiniteError = result.HasInfiniteError || isOpen.any();
+  }
+  if (this->Options.ComputeLeverage)
+  {
+    const Vector leverage = FindLeverage(work, progress.Part(0.3, 0.4));
+    for (Eigen::Index c = first; c < first + count; ++c)
+    {
+      result.Leverage.col(c) = leverage;
+    }
   }
   if (this->Options.ComputeError && work.Spectrum)
   {

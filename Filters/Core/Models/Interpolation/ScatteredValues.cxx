@@ -170,12 +170,17 @@ MergedValues::MergedValues(const ScatteredValues& given)
   const std::vector<Index>& order = groups.Order;
   this->Rows.Given.resize(count, given.Given.cols());
   this->Rows.Weights.resize(count);
+  this->RowOf.resize(static_cast<std::size_t>(count));
   for (std::size_t g = 1; g < groups.Begin.size(); ++g)
   {
     const Index begin = groups.Begin[g - 1];
     const Index end = groups.Begin[g];
     const auto row = static_cast<Eigen::Index>(this->Rows.Count());
     this->Rows.Places.push_back(given.Places[order[begin]]);
+    for (Index i = begin; i < end; ++i)
+    {
+      this->RowOf[order[i]] = static_cast<Index>(row);
+    }
     this->Rows.Given.row(row) = given.Given.row(order[begin]);
     this->Rows.Weights[row] = given.Weights[order[begin]];
     bool contradicts = false;

@@ -46,6 +46,7 @@ struct MergedValues
   explicit MergedValues(const ScatteredValues& given);
 
   ScatteredValues Rows;
+  std::vector<Index> RowOf; ///< per given value
   Index Repeated = 0; ///< rows of the given values that joined another one
   Index Contradicting = 0; ///< places whose values differ
 };

@@ -315,4 +315,35 @@ void SmoothFit::Refine(const Values& given, const Values& forces, Values& u)
   }
 }
 
+Vector SmoothFit::VarianceAtPoints(const ProgressMonitor& progress) const
+{
+  std::vector<InverseEntry> entries; // three of each place: its vertices in pairs
+  constexpr std::size_t next[] = { 1, 2, 0 };
+  for (const SurfacePoint& place : this->Data.Places)
+  {
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const bool counts = place.Coordinates[a] != 0.0 && place.Coordinates[next[a]] != 0.0;
+      const Index first = place.Vertices[counts ? a : 0];
+      entries.push_back({ first, counts ? place.Vertices[next[a]] : first, 0.0 });
+    }
+  }
+  const Vector diagonal = this->Factor.InverseDiagonal(this->Parallel, progress, &entries);
+  Vector variances(this->Data.Count());
+  for (Index i = 0; i < this->Data.Count(); ++i)
+  {
+    const SurfacePoint& place = this->Data.Places[static_cast<std::size_t>(i)];
+    double sum = 0.0;
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const double b = place.Coordinates[a];
+      sum += b == 0.0 ? 0.0 : b * b * diagonal[place.Vertices[a]];
+      sum +=
+        2.0 * b * place.Coordinates[next[a]] * entries[3 * static_cast<std::size_t>(i) + a].Value;
+    }
+    variances[i] = sum;
+  }
+  return variances;
+}
+
 } // namespace SurfaceDiffusion

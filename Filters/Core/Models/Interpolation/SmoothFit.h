@@ -62,6 +62,9 @@ public:
     return this->Factor.InverseDiagonal(this->Parallel, progress).head(this->Held.size());
   }
 
+  /// Of each value b H^-1 b^T with its row b of B, likewise.
+  Vector VarianceAtPoints(const ProgressMonitor& progress) const;
+
   /// log(det(H)), of the mu of Prepare(), and the rows of H, with the further unknowns of the energy.
   double LogDeterminant() const;
   Index NumberOfRows() const { return static_cast<Index>(this->H.rows()); }

@@ -19,12 +19,13 @@ namespace SurfaceDiffusion
 namespace
 {
 
-/// The values of each component, with its own numbers of vertices.
-std::vector<RepeatedValues> ByComponent(const TriangleMesh& mesh, const RepeatedValues& all)
+/// The values of each component, with its own numbers of vertices. rows: those of all values that it has.
+std::vector<RepeatedValues> ByComponent(
+  const TriangleMesh& mesh, const RepeatedValues& all, std::vector<std::vector<Index>>& rows)
 {
   const std::vector<Index>& begin = mesh.ComponentsBegin();
   std::vector<RepeatedValues> parts(static_cast<std::size_t>(mesh.NumberOfComponents()));
-  std::vector<std::vector<Index>> rows(parts.size());
+  rows.assign(parts.size(), {});
   for (Index i = 0; i < all.Count(); ++i)
   {
     SurfacePoint place = all.Places[i];
@@ -151,7 +152,9 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   }
   const Eigen::RowVectorXd lowest = merged.Rows.Given.colwise().minCoeff();
   const Eigen::RowVectorXd highest = merged.Rows.Given.colwise().maxCoeff();
-  const std::vector<RepeatedValues> values = ByComponent(mesh, { data, merged });
+  std::vector<std::vector<Index>> rowsOfParts;
+  const std::vector<RepeatedValues> values = ByComponent(mesh, { data, merged }, rowsOfParts);
+  Values leverage(this->Options.ComputeLeverage ? merged.Rows.Count() : 0, columns);
   const ComponentMeshes meshes(mesh);
   std::vector<const RepeatedValues*> valuesOfParts;
   std::vector<std::vector<Column>> columnsOfParts(result.Columns.size());
@@ -165,15 +168,20 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
     }
     const Index begin = mesh.ComponentsBegin()[c];
     const Index size = mesh.ComponentsBegin()[c + 1] - begin;
-    const ProgressMonitor own =
+    const ProgressMonitor ofPart =
       progress.Part(static_cast<double>(begin) / n, static_cast<double>(begin + size) / n);
     const Result part = size == n
-      ? this->FitPart(rows, lowest, highest, own)
-      : this->OfComponent(meshes, c).FitPart(rows, lowest, highest, own);
+      ? this->FitPart(rows, lowest, highest, ofPart)
+      : this->OfComponent(meshes, c).FitPart(rows, lowest, highest, ofPart);
     result.U.middleRows(begin, size) = part.U;
     if (this->Options.ComputeError)
     {
       result.Error.middleRows(begin, size) = part.Error;
+    }
+    for (Index i = 0; i < rows.Count() && this->Options.ComputeLeverage; ++i)
+    {
+      const std::vector<Index>& all = rowsOfParts[static_cast<std::size_t>(c)];
+      leverage.row(all[static_cast<std::size_t>(i)]) = part.Leverage.row(i);
     }
     for (std::size_t column = 0; column < result.Columns.size(); ++column)
     {
@@ -192,6 +200,12 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   for (std::size_t column = 0; column < result.Columns.size(); ++column)
   {
     result.Columns[column] = Together(columnsOfParts[column], valuesOfParts);
+  }
+  result.Leverage.resize(this->Options.ComputeLeverage ? data.Count() : 0, columns);
+  for (Index i = 0; i < static_cast<Index>(result.Leverage.rows()); ++i)
+  {
+    const Index row = merged.RowOf[static_cast<std::size_t>(i)];
+    result.Leverage.row(i) = data.Weights[i] / merged.Rows.Weights[row] * leverage.row(row);
   }
   progress.Report(1.0);
   return result;
@@ -231,6 +245,7 @@ SmoothInterpolation::Result SmoothInterpolation::FitPart(const RepeatedValues& r
   {
     result.Error = Values::Zero(n, columns);
   }
+  result.Leverage = Values::Ones(rows.Count(), columns); // of values that hold
   result.PartsWithTooFewValues =
     this->Options.Smoothing == Choice::Automatic && rows.Count() < result.EnoughPlaces ? 1 : 0;
   if (this->Options.Smoothing == Choice::Exact || result.PartsWithTooFewValues > 0)

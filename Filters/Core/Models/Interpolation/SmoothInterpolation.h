@@ -59,6 +59,7 @@ public:
     double NoiseLevel = 0.0;
     bool KeepRange = false; ///< min d <= u <= max d in each column
     bool ComputeError = false;
+    bool ComputeLeverage = false;
   };
 
   /// What was found for a column of the data, over all components.
@@ -85,6 +86,10 @@ public:
     /// those whose values do not show a deviation: one, all on a function without energy, or all
     /// reached by the fit. Infinite where the values leave a slope open.
     Values Error;
+    /// How far the fit follows each given value, 0 to 1, d x k: the derivative of u(p_i) by d_i. Without
+    /// the value i, u(p_i) differs from d_i by the residual over 1 less the leverage, at the same mu. No
+    /// rows unless asked for.
+    Values Leverage;
     bool HasUnknownError = false; ///< of values that do not show a deviation
     bool HasInfiniteError = false;
     std::vector<Column> Columns;
@@ -135,6 +140,7 @@ private:
     Work& work, const Flags& held, bool isExact, const ProgressMonitor& progress) const;
   Vector ErrorOverSmoothing(
     Work& work, Result& result, Eigen::Index column, const ProgressMonitor& progress) const;
+  static Vector FindLeverage(const Work& work, const ProgressMonitor& progress);
   double StartSmoothing(const Work& work) const;
 
   std::shared_ptr<const Assembler> Assembly;
