@@ -220,4 +220,5 @@ NB_MODULE(_core, m)
     .def("turned_triangles", &PythonRuns::TurnedTriangles, "surface"_a);
   BindShapeFunctions(m);
   BindPieceFunctions(m);
+  BindResamplingFunctions(m);
 }
