@@ -156,14 +156,33 @@ TEST(Resampling, ARowIsForwardIfItHasAllThatTheOtherHas)
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 
+TEST(Resampling, VerticesWithoutAreaTakeNoPart)
+{
+  const AreaSphere source = Coarse();
+  const AreaSphere target = Fine();
+  const auto withPoint = [](AreaSphere sphere)
+  {
+    sphere.Vertices.conservativeResize(sphere.Vertices.rows() + 1, 3);
+    sphere.Vertices.bottomRows(1) = Eigen::RowVector3d(0.36, 0.48, 0.8);
+    sphere.Areas.conservativeResize(sphere.Areas.size() + 1);
+    sphere.Areas.tail(1).setZero();
+    return sphere;
+  };
+  const Eigen::MatrixXd expected = Adaptive(source, target);
+  const Eigen::MatrixXd found = Adaptive(withPoint(source), withPoint(target));
+  EXPECT_EQ(found.topLeftCorner(expected.rows(), expected.cols()), expected);
+  EXPECT_EQ(found.rightCols(1).norm(), 0.0);
+  EXPECT_EQ(found.bottomRows(1).norm(), 0.0);
+}
+
 TEST(Resampling, WeightsDoNotDependOnRadiusAndUnitOfAreas)
 {
   const RowMatrix expected = Adaptive(Fine(), Coarse());
   AreaSphere source = Fine();
   AreaSphere target = Coarse();
-  source.Vertices *= 128.0;
-  source.Areas *= 0.25;
-  target.Areas *= 1024.0;
+  source.Vertices *= 100.0;
+  source.Areas *= 0.3;
+  target.Areas *= 7e3;
   const RowMatrix found = Adaptive(source, target);
   EXPECT_LT((found - expected).norm(), 1e-12 * expected.norm());
 }

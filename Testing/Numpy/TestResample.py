@@ -190,8 +190,10 @@ class Errors(unittest.TestCase):
         source = Surface(np.vstack([FINE.points, [[0, 0, 0], [9, 9, 9]]]), FINE.triangles)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            other = resample(source, COARSE, np.vstack([values, [[7] * 4, [8] * 4]]))
-        np.testing.assert_array_equal(other, resample(FINE, COARSE, values))
+            for method in ("Barycentric", "AdaptiveBarycentricArea"):
+                for ball in (COARSE, sphere(6)):
+                    other = resample(source, ball, np.vstack([values, [[7] * 4, [8] * 4]]), method)
+                    np.testing.assert_array_equal(other, resample(FINE, ball, values, method))
 
     def test_progress_is_told_and_its_exception_ends_the_search(self):
         told = []

@@ -84,7 +84,9 @@ RowMatrix BarycentricWeights(const Points& target, const Points& source, const T
 RowMatrix AdaptiveAreaWeights(const RowMatrix& forward, const RowMatrix& reverse,
   const Vector& sourceAreas, const Vector& targetAreas)
 {
-  const RowMatrix gathered = reverse.transpose();
+  RowMatrix gathered = reverse.transpose();
+  gathered.prune(
+    [&](Eigen::Index, Eigen::Index vertex, double) { return sourceAreas[vertex] > 0.0; });
   RowMatrix weights(forward.rows(), forward.cols());
   weights.reserve(forward.nonZeros() + gathered.nonZeros());
   Vector sums = Vector::Zero(forward.cols());

@@ -39,7 +39,8 @@ RowMatrix BarycentricWeights(const Points& target, const Points& source, const T
 ///     W_ts = A_s B_ts A_t / sum over t' of B_t's A_t',    sum over t of W_ts = A_s,
 ///
 /// where row t of B is that of F (forward) if G_ts is 0 wherever F_ts is 0, and that of G otherwise. G
-/// is the transpose of `reverse`, the weights F of the source's vertices in the target's triangles.
+/// is the transpose of `reverse`, the weights F of the source's vertices in the target's triangles,
+/// without those of the area 0, which take no part. A target vertex of the area 0 has an empty row.
 /// This is ADAP_BARY_AREA of Connectome Workbench (Marcus et al., Informatics and data mining tools
 /// and strategies for the Human Connectome Project, Front. Neuroinform. 5, 2011).
 RowMatrix AdaptiveAreaWeights(const RowMatrix& forward, const RowMatrix& reverse,
