@@ -157,7 +157,7 @@ def resample(
 
     where row t of B is that of F if G_ts is 0 wherever F_ts is 0, and that of G otherwise. They keep the
     integral, sum over t of W_ts = A_s. Rows are divided by their sums at last, so that constants are
-    exact; the sum of the areas times the values then changes by 1e-3 between meshes of brains.
+    exact; the mean by area then changes by a thousandth of the standard deviation.
 
     Parameters
     ----------

