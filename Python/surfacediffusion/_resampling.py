@@ -206,7 +206,7 @@ def resample(
 
 def _as_method(method: Any) -> str:
     for word in _METHODS:
-        if method in (word, _core.python_name(word)):
+        if isinstance(method, str) and method in (word, _core.python_name(word)):
             return word
     raise ValueError(f"method is {shorten(method)}; allowed: {', '.join(_METHODS)}, or in snake_case")
 
@@ -215,11 +215,13 @@ def _find_areas(name: str, surface: Surface, given: Any) -> NDArray[np.float64]:
     """The areas of the points of a sphere, which is checked."""
     used = np.zeros(surface.n_points, dtype=bool)
     used[surface.triangles] = True
-    radii = np.linalg.norm(surface.points[used], axis=1)
+    points = surface.points[used]
+    scale = np.abs(points).max() or 1.0
+    radii = scale * np.linalg.norm(points / scale, axis=1)
     low, high = float(radii.min()), float(radii.max())
-    if not (low > 0.0 and high <= (1.0 + _SPHERE) * low):
+    if not (1e-150 < low <= high < 1e150 and high <= (1.0 + _SPHERE) * low):  # areas are squares
         raise ValueError(f"{name} has points {low:.4g} to {high:.4g} from the origin; allowed: a sphere about the "
-                         f"origin, radii that differ by {_SPHERE:.0%} at most, such as sphere.reg")
+                         f"origin, radii from 1e-150 to 1e150 that differ by {_SPHERE:.0%} at most, such as sphere.reg")
     areas = surface.vertex_areas if given is None else check_areas(f"{name}_areas", given, used)
     return np.where(used, areas, 0.0)
 

@@ -198,6 +198,20 @@ TEST(Resampling, ConstantsKeepTheirBits)
   EXPECT_TRUE((found.array() == 0.1 || found.array().isNaN()).all());
 }
 
+TEST(Resampling, TheLargestNumbersHaveAMean)
+{
+  const RowMatrix weights =
+    FromDense((Eigen::MatrixXd(2, 3) << 0.25, 0.25, 0.5, 0.5, 0.0, 0.5).finished());
+  constexpr double largest = std::numeric_limits<double>::max();
+  Values values(3, 2);
+  values << largest, largest, -largest, Missing, -largest, -largest;
+  const Values found = Means(weights, values);
+  EXPECT_NEAR(found(0, 0) / largest, -0.5, 1e-14);
+  EXPECT_EQ(found(1, 0), 0.0);
+  EXPECT_NEAR(found(0, 1) / largest, -1.0 / 3.0, 1e-14);
+  EXPECT_EQ(found(1, 1), 0.0);
+}
+
 TEST(Resampling, MissingValuesAreLeftOutAsVerticesAre)
 {
   const AreaSphere source = Fine();

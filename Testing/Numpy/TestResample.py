@@ -160,6 +160,9 @@ class Errors(unittest.TestCase):
         flat = Surface(FINE.points * [1, 1, 0.9], FINE.triangles)
         self.refused(r"^source has points 0.9 to 1 from the origin; allowed: a sphere about the origin", flat,
                      COARSE, values)
+        for size in (1e160, 1e-170):
+            self.refused("^source has points .* from the origin; allowed: a sphere .* radii from 1e-150 to 1e150",
+                         Surface(size * FINE.points, FINE.triangles), COARSE, values)
         self.refused("^target has points .* from the origin; allowed: a sphere", FINE,
                      Surface(FINE.points + [5, 0, 0], FINE.triangles), values)
         self.refused(r"^values has shape \(3,\); allowed: \(10242,\) or \(10242, k\)", FINE, COARSE, [1, 2, 3])
@@ -167,6 +170,7 @@ class Errors(unittest.TestCase):
                      np.where(np.arange(len(values)) == 7, -np.inf, values))
         self.refused("^method is 'Nearest'; allowed: Barycentric, AdaptiveBarycentricArea", FINE, COARSE, values,
                      "Nearest")
+        self.refused(r"^method is \['Barycentric'\]; allowed: Barycentric", FINE, COARSE, values, ["Barycentric"])
         self.refused(r"^source_areas has shape \(2562,\); allowed: \(10242,\)", FINE, COARSE, values,
                      source_areas=COARSE.vertex_areas)
         self.refused("^target_areas has 0.0 at point 3; allowed: finite numbers above 0", FINE, COARSE, values,

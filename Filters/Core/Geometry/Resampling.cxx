@@ -42,25 +42,26 @@ void ForEachTarget(const RowWeights& weights, const ColumnView<const T>& source,
     });
 }
 
-/// Of one column in which values may be missing.
+/// Of one column in which values may be missing. unit: a power of two that their differences do not
+/// overflow in.
 template <typename T>
-T MeanOfKnown(const WeighedRows<T>& rows, Eigen::Index column)
+double MeanOfKnown(const WeighedRows<T>& rows, Eigen::Index column, double unit)
 {
-  T first = std::numeric_limits<T>::quiet_NaN();
+  double first = std::numeric_limits<double>::quiet_NaN();
   double difference = 0.0;
   double known = 0.0;
   for (Index entry = rows.Begin; entry < rows.End; ++entry)
   {
-    const T value = rows.ValuesOf(entry)[column];
+    const double value = rows.ValuesOf(entry)[column] / unit;
     if (std::isnan(value))
     {
       continue;
     }
     first = known == 0.0 ? value : first;
     known += rows.WeightOf(entry);
-    difference += rows.WeightOf(entry) * (static_cast<double>(value) - first);
+    difference += rows.WeightOf(entry) * (value - first);
   }
-  return known == 0.0 ? first : static_cast<T>(first + difference / known);
+  return (known == 0.0 ? first : first + difference / known) * unit;
 }
 
 /// sums: room for pairs of a label and its weights.
@@ -120,10 +121,11 @@ void ResampleMeans(const RowWeights& weights, const ColumnView<const T>& source,
         }
         for (Eigen::Index k = 0; k < count; ++k)
         {
-          const bool isKnown = rows.Begin < rows.End && !std::isnan(sums[k]);
-          found[start + k] = isKnown
-            ? static_cast<T>(rows.ValuesOf(rows.Begin)[start + k] + sums[k])
-            : MeanOfKnown(rows, start + k);
+          double mean = rows.Begin < rows.End ? rows.ValuesOf(rows.Begin)[start + k] + sums[k]
+                                              : std::numeric_limits<double>::quiet_NaN();
+          mean = std::isnan(mean) ? MeanOfKnown(rows, start + k, 1.0) : mean;
+          mean = std::isfinite(mean) || std::isnan(mean) ? mean : MeanOfKnown(rows, start + k, 4.0);
+          found[start + k] = static_cast<T>(mean);
         }
       }
     });
