@@ -102,6 +102,8 @@ class SameBits(unittest.TestCase):
             ("denoise a.off v.npy out.npy --weight 3",
              each(sd.intrinsic_tv, s, mode="SteadyState", fidelity_weight=3)),
             ("inpaint a.off few.npy out.npy", sd.heat(s, sparse, mode="SteadyState", hold_known_values=True)),
+            ("inpaint a.off few.npy out.npy --intrinsic-delaunay",
+             sd.heat(s, sparse, mode="SteadyState", hold_known_values=True, intrinsic_delaunay=True)),
             ("inpaint a.off few.npy out.npy --model tv",
              sd.intrinsic_tv(s, sparse, mode="SteadyState", hold_known_values=True)),
             ("interpolate a.off few.npy out.npy --smoothing 0.01", sd.interpolate(s, sparse, smoothing=0.01)),
