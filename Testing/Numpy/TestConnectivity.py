@@ -13,9 +13,9 @@ BALL = sphere(2)
 COUNT = BALL.n_points
 
 
-def dual():
+def dual(level=3):
     """The hexagons and pentagons around the points of an icosphere: corners (m, 3), and a list of polygons."""
-    ball = sphere(3)
+    ball = sphere(level)
     corners = ball.points[ball.triangles].sum(axis=1)
     corners /= np.linalg.norm(corners, axis=1)[:, None]
     around = [[] for _ in range(ball.n_points)]
