@@ -79,6 +79,9 @@ class SameBits(unittest.TestCase):
         for name, array in (("v", values), ("roi", 1.0 - outside), ("few", sparse), ("speed", speed),
                             ("vectors", columns(-y, x, z)), ("marks", np.where(x > 8, 4, 7 * (y > 8)))):
             np.save(name + ".npy", array)
+        of_faces, inner = random.normal(size=s.n_faces), np.arange(s.n_faces) < s.n_faces // 2
+        np.save("f.npy", of_faces)
+        np.save("inner.npy", inner.astype(float))
         np.save("b.off.npy", np.where(sphere(2, 30.0)[0] > 0, 1.0, 0.0))
         masked = {"mask": outside, "mask_mode": "Exclude"}
         inside = np.where(outside[:, None], 0, values)
@@ -137,6 +140,10 @@ class SameBits(unittest.TestCase):
              sd.resample(ball, s, ball.points > 0, method="Barycentric")),
             ("metric-resample v.npy a.off b.off ADAP_BARY_AREA out.npy -area-surfs a.off b.off",
              sd.resample(s, ball, values)),
+            ("scale-filter a.off f.npy 12 out.npy --order 2 --faces", sd.scale_filter(s, of_faces, 12, order=2)),
+            ("scale-filter a.off f.npy 12 out.npy --faces --roi inner.npy",
+             np.nan_to_num(sd.scale_filter(s, of_faces, 12, roi=inner))),
+            ("spectrum a.off f.npy 8 16 --faces", sd.spectrum(s, of_faces, [8, 16]).variance),
             ("refine a.off 1.5 fine.off --data v.npy out.npy", fine.at_points(values)),
             ("denoise-mesh rough.off out.off --noise 0.1", sd.denoise_mesh(r, noise_level=0.1).points),
             ("spectrum a.off v.npy 8 16 --column 2", sd.spectrum(s, two, [8, 16]).variance),
