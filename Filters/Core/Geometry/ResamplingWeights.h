@@ -29,8 +29,8 @@ struct AreaSphere
   Vector Areas; ///< 0 or more
 };
 
-/// F: the barycentric coordinates of the points of the triangles that are nearest to each target
-/// vertex, as seen from the origin, both spheres having radius 1.
+/// F: row t has the barycentric coordinates of the point of the source's triangles that is nearest to
+/// target vertex t. Both spheres have radius 1.
 RowMatrix BarycentricWeights(const Points& target, const Points& source, const Triangles& faces,
   const ParallelFor& parallel, const ProgressMonitor& progress);
 

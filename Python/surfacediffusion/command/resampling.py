@@ -18,7 +18,8 @@ WORKBENCH_METHODS = {"ADAP_BARY_AREA": "AdaptiveBarycentricArea", "BARYCENTRIC":
 FILES = f"""
 Spheres: {common.SURFACES.split(": ", 1)[1]}
 DATA: GIFTI (.func.gii, .shape.gii, .label.gii), FreeSurfer (curv, .mgh, .annot, .label), NumPy (.npy), text, PLY or
-VTK. OUTPUT has the format and the metadata of DATA, or one that its name gives: {common.NEW_FORMATS.split(", or .ply")[0]}.
+VTK. OUTPUT has the format and the metadata of DATA, or one that its name gives:
+{common.NEW_FORMATS.split(", or .ply")[0]}.
 NaN means missing: the value is not used.
 """
 
