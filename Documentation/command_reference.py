@@ -58,6 +58,7 @@ def _part(name, parser, cifti):
 
 def _word(action):
     name = action.metavar or action.dest.upper()
+    name = name if isinstance(name, str) else " ".join(name)  # of several values
     return f"{name}..." if action.nargs == "+" else name
 
 

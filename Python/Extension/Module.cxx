@@ -180,7 +180,10 @@ NB_MODULE(_core, m)
     .def("draw", &SurfaceFields::Draw, "seed"_a, "first"_a, "fields"_a, "progress"_a.none())
     .def("filter_scales", &SurfaceFields::FilterScales, "values"_a, "wavelengths"_a, "order"_a,
       "progress"_a.none())
+    .def("filter_scales_of_faces", &SurfaceFields::FilterScalesOfFaces, "values"_a, "wavelengths"_a,
+      "order"_a, "progress"_a.none())
     .def("areas", &SurfaceFields::Areas)
+    .def("face_areas", &SurfaceFields::FaceAreas)
     .def("number_of_vertices", &SurfaceFields::NumberOfVertices)
     .def("seams", &SeamsOf<SurfaceFields>)
     .def("length_unit", &SurfaceFields::LengthUnit)
@@ -220,4 +223,5 @@ NB_MODULE(_core, m)
     .def("turned_triangles", &PythonRuns::TurnedTriangles, "surface"_a);
   BindShapeFunctions(m);
   BindPieceFunctions(m);
+  BindResamplingFunctions(m);
 }

@@ -3,6 +3,7 @@
 #include "SurfaceFields.h"
 
 #include "Core/Foundation/Columns.h"
+#include "Core/Models/Fields/CellScaleFilter.h"
 #include "Core/Models/Fields/ScaleFilter.h"
 #include "Core/Operators/CotanWeights.h"
 #include "NewArrays.h"
@@ -23,6 +24,7 @@ namespace SurfaceDiffusion
 SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
   const std::optional<FlagArray>& mask, bool maskOnFaces, bool merges, double tolerance,
   const nb::object& progress)
+  : Input(std::move(surface))
 {
   SurfaceOptions options;
   options.MergeCoincidentPoints = merges;
@@ -30,8 +32,9 @@ SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      this->Built = std::make_unique<const Surface>(surface->Read({ ReadFlags(mask), maskOnFaces }),
-        options, PythonThreads::Instance(), monitor);
+      this->Built =
+        std::make_unique<const Surface>(this->Input->Read({ ReadFlags(mask), maskOnFaces }),
+          options, PythonThreads::Instance(), monitor);
     });
 }
 
@@ -100,14 +103,8 @@ double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray&
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      const TriangleMesh& mesh = this->Built->Mesh();
-      Vector ofVertices(mesh.NumberOfVertices());
-      for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-      {
-        ofVertices[i] = wavelengths.data()[mesh.InputVertex()[i]] / mesh.LengthUnit();
-      }
-      ResolventPolynomial filter = MakeScaleFilter(
-        this->Built->SharedAssembler(), ofVertices, order, PythonThreads::Instance());
+      ResolventPolynomial filter = MakeScaleFilter(this->Built->SharedAssembler(),
+        this->WavelengthsOfVertices(wavelengths), order, PythonThreads::Instance());
       const auto columns = static_cast<Eigen::Index>(values.shape(1));
       const auto all = static_cast<double>(columns);
       for (Eigen::Index start = 0; start < columns; start += ColumnPanel)
@@ -121,6 +118,64 @@ double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray&
       missed = filter.MissedResidual();
     });
   return missed;
+}
+
+double SurfaceFields::FilterScalesOfFaces(const ColumnArray& values, const FactorArray& wavelengths,
+  int order, const nb::object& progress) const
+{
+  double missed = 0.0;
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      const auto faces = static_cast<Index>(values.shape(0));
+      CellScaleFilter filter(this->Built->SharedAssembler(), this->Built->Points(),
+        this->FacesOfTriangles(), faces, this->WavelengthsOfVertices(wavelengths), order,
+        PythonThreads::Instance());
+      Eigen::Map<Values> columns(values.data(), faces, static_cast<Eigen::Index>(values.shape(1)));
+      Values filtered = columns;
+      filter.Apply(filtered, monitor);
+      columns = filtered;
+      for (Index face = 0; face < faces; ++face)
+      {
+        if (!(filter.CellAreas()[face] > 0.0))
+        {
+          columns.row(face).setConstant(std::numeric_limits<double>::quiet_NaN());
+        }
+      }
+      missed = filter.MissedResidual();
+    });
+  return missed;
+}
+
+nb::object SurfaceFields::FaceAreas() const
+{
+  const auto faces = static_cast<Index>(this->Input->NumberOfFaces());
+  const CellTransfer transfer(
+    this->Built->Mesh(), this->FacesOfTriangles(), faces, PythonThreads::Instance());
+  const Vector& areas = transfer.CellAreas();
+  return NewArray(std::vector<double>(areas.data(), areas.data() + areas.size()));
+}
+
+Vector SurfaceFields::WavelengthsOfVertices(const FactorArray& wavelengths) const
+{
+  const TriangleMesh& mesh = this->Built->Mesh();
+  Vector ofVertices(mesh.NumberOfVertices());
+  for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+  {
+    ofVertices[i] = wavelengths.data()[mesh.InputVertex()[i]] / mesh.LengthUnit();
+  }
+  return ofVertices;
+}
+
+std::vector<Index> SurfaceFields::FacesOfTriangles() const
+{
+  std::vector<Index> faces(static_cast<std::size_t>(this->Built->NumberOfTriangles()));
+  for (std::size_t row = 0; row < faces.size(); ++row)
+  {
+    faces[row] =
+      static_cast<Index>(this->Input->FaceOf(this->Built->InputTriangle(static_cast<Index>(row))));
+  }
+  return faces;
 }
 
 void SurfaceFields::AddTo(NoiseWidth& widths, const ColumnArray& values) const

@@ -11,6 +11,7 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace SurfaceDiffusion
 {
@@ -38,6 +39,12 @@ public:
   double FilterScales(const ColumnArray& values, const FactorArray& wavelengths, int order,
     const nanobind::object& progress) const;
 
+  /// The same of data at the faces of the surface, one row per face. NaN at faces that take no part.
+  double FilterScalesOfFaces(const ColumnArray& values, const FactorArray& wavelengths, int order,
+    const nanobind::object& progress) const;
+  /// The areas of the faces in LengthUnit()^2; 0 for those that take no part.
+  nanobind::object FaceAreas() const;
+
   /// Add the columns, NaN where a value is missing, to an estimate of their smoothness.
   void AddTo(NoiseWidth& widths, const ColumnArray& values) const;
   const TriangleMesh& Mesh() const { return this->Built->Mesh(); }
@@ -51,9 +58,14 @@ public:
   double MeanEdgeLength() const;
 
 private:
+  /// In the unit of the mesh, of the wavelengths of points.
+  Vector WavelengthsOfVertices(const FactorArray& wavelengths) const;
+  /// The face of each triangle of the mesh's input.
+  std::vector<Index> FacesOfTriangles() const;
   Values Read(const ColumnArray& columns, Eigen::Index first, Eigen::Index count) const;
   void Write(const Values& ofVertices, Eigen::Index first, const ColumnArray& columns) const;
 
+  std::shared_ptr<const InputSurface> Input;
   std::unique_ptr<const Surface> Built;
   std::unique_ptr<RandomField> Field;
   bool InUse = false;

@@ -41,6 +41,7 @@
 `surrogates`          random maps with the values and the smoothness of a map
 `scale_filter`        data without the scales below a wavelength
 `spectrum`            the variance of data between scales
+`resample`            values from sphere to sphere, by the weights of a `Resampler`
 `refine`              shorter edges, for the large triangles of CAD files
 `relief`              values as relief, for printing
 `on_faces`            where arrays are if there are as many points as faces; `on_points` alike
@@ -63,7 +64,7 @@ import typing as _typing
 import warnings as _warnings
 from importlib.metadata import version as _version
 
-from . import _core, _derivatives, _distance, _fields, _functions, _operators, _result, _scales, _steps
+from . import _core, _derivatives, _distance, _fields, _functions, _operators, _resampling, _result, _scales, _steps
 from ._derivatives import *  # noqa: F403
 from ._distance import *  # noqa: F403
 from ._fields import *  # noqa: F403
@@ -72,6 +73,7 @@ from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
 from ._images import estimate_fwhm_img, smooth_img
 from ._operators import *  # noqa: F403
 from ._refinement import RefinedSurface, refine
+from ._resampling import *  # noqa: F403
 from ._result import *  # noqa: F403
 from ._run import States, SurfaceDiffusionWarning
 from ._scales import *  # noqa: F403
@@ -92,6 +94,7 @@ __all__ += _distance.__all__
 __all__ += _fields.__all__
 __all__ += _functions.__all__
 __all__ += _operators.__all__
+__all__ += _resampling.__all__
 __all__ += _result.__all__
 __all__ += _scales.__all__
 __all__ += _steps.__all__

@@ -378,28 +378,46 @@ def make_fields(surface: Surface, mask: Any, merges: bool = False, tolerance: fl
     return fields
 
 
-def leave_out_missing(surface: Surface, mask: Any, values: NDArray[np.float64]) -> Any:
-    """The mask that leaves out points with NaN in any column, too."""
+def leave_out_missing(
+    surface: Surface, mask: Any, values: NDArray[np.float64], of_faces: bool = False
+) -> Any:
+    """The mask that leaves out points, or faces, with NaN in any column, too."""
     missing = np.isnan(values) if values.ndim == 1 else np.isnan(values).any(axis=1)
     if not missing.any():
         return mask
     flags = as_flags("mask", mask)
     if flags is None:
-        return missing
+        return place(missing, of_faces)
     sizes = (surface.n_points, surface.n_faces)
-    if not find_place("mask", mask, sizes, "flag", False):
-        return missing | (flags != 0)
+    masks_faces = find_place("mask", mask, sizes, "flag", False)
+    if masks_faces == of_faces:
+        return place(missing | (flags != 0), of_faces)
     faces = np.repeat(np.arange(surface.n_faces), np.diff(surface._offsets))
-    masked = flags != 0
-    masked[faces[missing[surface._connectivity]]] = True
+    of_points, masked = (flags != 0, missing) if of_faces else (missing, flags != 0)
+    masked[faces[of_points[surface._connectivity]]] = True
     return place(masked, True)
+
+
+def areas_of(fields: Any, of_faces: bool) -> NDArray[np.float64]:
+    """The areas of points or faces; 0 for those that take no part."""
+    areas: NDArray[np.float64] = fields.face_areas() if of_faces else fields.areas()
+    return areas
+
+
+def filter_scales(fields: Any, of_faces: bool, *arguments: Any) -> float:
+    """Filter the data of points or faces in place; the largest residual above the tolerance."""
+    filter_them = fields.filter_scales_of_faces if of_faces else fields.filter_scales
+    missed: float = filter_them(*arguments)
+    return missed
 
 
 def find_bands(
     fields: Any, areas: NDArray[np.float64], maps: NDArray[np.float64],
-    wavelengths: Sequence[float], order: int, progress: Callable[[float], Any] | None
+    wavelengths: Sequence[float], order: int, progress: Callable[[float], Any] | None,
+    of_faces: bool = False,
 ) -> NDArray[np.float64]:
-    """The variance of each column between successive wavelengths: (wavelengths + 1, columns)."""
+    """The variance of each column between successive wavelengths: (wavelengths + 1, columns). areas: of
+    points, or of faces."""
     known = areas > 0.0
     centred = np.where(known[:, None], maps, 0.0)
     centred -= (areas @ centred) / areas.sum()
@@ -407,8 +425,8 @@ def find_bands(
     for number, wavelength in enumerate(wavelengths):
         filtered = centred.copy()
         share = part_of(progress, number / len(wavelengths), 1.0 / len(wavelengths))
-        warn_of_solves(fields.filter_scales(
-            filtered, np.full(len(areas), float(wavelength)), order, share))
+        lengths = np.full(len(fields.areas()), float(wavelength))
+        warn_of_solves(filter_scales(fields, of_faces, filtered, lengths, order, share))
         filtered[~known] = 0.0
         kept.append(areas @ filtered**2 / areas.sum())
     return np.array([*(kept[k] - kept[k + 1] for k in np.arange(len(wavelengths))), kept[-1]])

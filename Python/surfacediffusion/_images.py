@@ -16,7 +16,7 @@ from ._surface import Surface, as_surface
 
 
 def smooth_img(
-    img: Any, fwhm: float, *, mask_img: Any = None, number_of_time_steps: int = 1,
+    img: Any, fwhm: float | None, *, mask_img: Any = None, number_of_time_steps: int = 1,
     progress: Any = None,
 ) -> Any:
     """Smooth surface images of nilearn, both hemispheres, by a given width.
@@ -30,8 +30,9 @@ def smooth_img(
     ----------
     img : nilearn.surface.SurfaceImage, or a list of these
         Data of shape (n,) or (n, k) on each mesh. NaN is missing, and has a value afterwards.
-    fwhm : float
-        The full width at half maximum of the Gaussian, above 0.
+    fwhm : float, 0 or more, or None
+        The full width at half maximum of the Gaussian. 0 and None: the values stay, as with
+        nilearn, and so does NaN, for which nilearn has 0.
     mask_img : nilearn.surface.SurfaceImage, optional
         The region of interest, as nilearn has it: nonzero is inside. Nothing flows across its
         boundary, and outside the result is 0. For instance the cortex without the medial wall.
@@ -116,9 +117,10 @@ def _parts(
         name: np.asarray(values).reshape(len(values), -1)[:, 0] for name, values in regions.items()}
 
 
-def _smooth(img: Any, fwhm: float, mask_img: Any, steps: int, progress: Any,
+def _smooth(img: Any, fwhm: float | None, mask_img: Any, steps: int, progress: Any,
             surfaces: dict[int, Surface]) -> Any:
-    as_number("fwhm", fwhm)
+    width = 0.0 if fwhm is None else as_number(
+        "fwhm", fwhm, "finite numbers, 0 or more, or None", lambda number: 0.0 <= number < np.inf)
     meshes, data, roi = _parts(img, mask_img)
     results = {}
     for name, mesh in meshes.items():
@@ -127,7 +129,7 @@ def _smooth(img: Any, fwhm: float, mask_img: Any, steps: int, progress: Any,
         if values.dtype != np.float32:
             values = values.astype(np.float64)
         outside = None if name not in roi else ~(np.nan_to_num(roi[name]) != 0)
-        results[name] = _smooth_part(surface, values, fwhm, outside, steps, progress)
+        results[name] = _smooth_part(surface, values, width, outside, steps, progress)
     return type(img)(mesh=img.mesh, data=results)
 
 
@@ -140,6 +142,8 @@ def _smooth_part(surface: Surface, values: NDArray[Any], fwhm: float, outside: A
         if outside.all():
             return result.reshape(values.shape)
         columns = np.where(outside[:, None], columns.dtype.type(0), columns)
+    if fwhm == 0.0:
+        return np.array(columns).reshape(values.shape)
     groups: dict[bytes, list[int]] = {}
     for i, missing in enumerate(np.isnan(columns).T):
         groups.setdefault(np.packbits(missing).tobytes(), []).append(i)

@@ -10,11 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._fields import (
-    check_finite, find_bands, leave_out_missing, make_fields, warn_of_edges, warn_of_solves,
+    areas_of, check_finite, filter_scales, find_bands, leave_out_missing, make_fields, warn_of_edges,
+    warn_of_solves,
 )
 from ._run import Progress, ProgressReporter
 from ._settings import as_integer, as_number, shorten
-from ._surface import Surface, SurfaceLike, as_data, as_numbers, as_surface, left_out, require_shape
+from ._surface import (
+    Surface, SurfaceLike, as_data, as_numbers, as_surface, find_on_faces, left_out, require_shape,
+)
 
 __all__ = ["Spectrum", "scale_filter", "spectrum"]
 
@@ -25,6 +28,7 @@ def scale_filter(
     wavelength: ArrayLike,
     *,
     order: int = 1,
+    on_faces: bool | None = None,
     mask: ArrayLike | None = None,
     roi: ArrayLike | None = None,
     progress: Progress = None,
@@ -41,17 +45,22 @@ def scale_filter(
     :func:`stiffness_matrix` the operator is M + 2 K / k^2 for order 1, one step of backward Euler of
     2 / k^2. Order 2 is a polynomial of degree 26 in such a step, exact to 2e-10.
 
+    Data at faces go to the points and back, with their integral, and what points do not resolve of them is
+    filtered by fluxes between faces. For smooth data this is of second order in the length of edges.
+
     Parameters
     ----------
     surface : Surface or tuple (points, faces)
         The surface.
-    values : array_like, shape (n,) or (n, k)
-        Data at points. Points with NaN in any column are left out, as land is in the ocean.
+    values : array_like, shape (n,) or (n, k), or (m,) or (m, k)
+        Data at points, or at faces. Those with NaN in any column are left out, as land is in the ocean.
     wavelength : float or array_like of shape (n,), above 0, in coordinates
         The wavelength, of which 1/3 is left: a number, or one per point, with which -Laplace / k^2
         becomes -div(k^-2 grad). Below two edges the mesh does not resolve it, and a warning says so.
     order : {1, 2}, default 1
         The sharpness of the filter.
+    on_faces : bool, optional
+        Whether `values` are at faces. Default: whether there are as many as faces, and not as points.
     mask : array_like, shape (n,) or (m,), optional
         Nonzero leaves a point with its faces, or a face, out.
     roi : array_like, shape (n,) or (m,), optional
@@ -62,7 +71,7 @@ def scale_filter(
     Returns
     -------
     ndarray of float64, the shape of values
-        NaN at points that are left out, and at those without a face that is left.
+        NaN at points that are left out, and at those without a face that is left; or at faces.
 
     References
     ----------
@@ -80,13 +89,14 @@ def scale_filter(
     True
     """
     surface = as_surface(surface)
-    data, result = _as_data(values, surface)
+    of_faces = find_on_faces("values", values, surface, on_faces)
+    data, result = _as_data(values, surface, of_faces)
     if isinstance(wavelength, (bool, np.bool_)):
         raise ValueError(f"wavelength is {wavelength}; allowed: finite numbers above 0")
     lengths = np.asarray(as_numbers("wavelength", wavelength), dtype=np.float64)
     require_shape("wavelength", lengths, lengths.shape in ((), (surface.n_points,)),
                   f"a number, or ({surface.n_points},), one per point")
-    fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), data))
+    fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), data, of_faces))
     lengths = np.array(np.broadcast_to(lengths, (surface.n_points,)))
     known = fields.areas() > 0.0
     bad = known & ~(np.isfinite(lengths) & (lengths > 0.0))
@@ -97,9 +107,9 @@ def scale_filter(
     order = as_integer("order", order, 1, 2, "1 and 2")
     warn_of_edges("wavelength", float(lengths[known].min()), fields)
     lengths[~known] = 1.0
-    result[~known] = 0.0
+    result[areas_of(fields, of_faces) == 0.0] = 0.0
     with surface._lock, ProgressReporter(progress) as reporter:
-        warn_of_solves(fields.filter_scales(result, lengths, order, reporter.callable))
+        warn_of_solves(filter_scales(fields, of_faces, result, lengths, order, reporter.callable))
         reporter.finish_part()
     return result.reshape(np.shape(values))
 
@@ -118,6 +128,7 @@ def spectrum(
     wavelengths: ArrayLike,
     *,
     order: int = 2,
+    on_faces: bool | None = None,
     mask: ArrayLike | None = None,
     roi: ArrayLike | None = None,
     progress: Progress = None,
@@ -130,13 +141,13 @@ def spectrum(
     ----------
     surface : Surface or tuple (points, faces)
         The surface.
-    values : array_like, shape (n,) or (n, k)
-        Data at points, from which the mean by area is subtracted. Points with NaN are left out.
+    values : array_like, shape (n,) or (n, k), or (m,) or (m, k)
+        Data at points or at faces, from which the mean by area is subtracted. Those with NaN are left out.
     wavelengths : array_like, shape (k,), above 0 and ascending, in coordinates
         The bounds between the scales.
     order : {1, 2}, default 2
         The order of the filter, as for :func:`scale_filter`: 2 separates the scales better.
-    mask, roi, progress
+    on_faces, mask, roi, progress
         As for :func:`scale_filter`.
 
     Returns
@@ -156,23 +167,28 @@ def spectrum(
     ((5,), True)
     """
     surface = as_surface(surface)
-    data, _ = _as_data(values, surface)
+    of_faces = find_on_faces("values", values, surface, on_faces)
+    data, _ = _as_data(values, surface, of_faces)
     lengths = np.asarray(as_numbers("wavelengths", wavelengths), dtype=np.float64)
     if lengths.ndim != 1 or lengths.size == 0 or not (np.diff(lengths) > 0.0).all():
         raise ValueError(f"wavelengths is {shorten(wavelengths)}; allowed: one or more ascending numbers")
     for length in lengths:
         as_number("wavelengths", float(length))
     order = as_integer("order", order, 1, 2, "1 and 2")
-    fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), data))
+    fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), data, of_faces))
     warn_of_edges("wavelengths", float(lengths[0]), fields)
     with surface._lock, ProgressReporter(progress) as reporter:
-        bands = find_bands(fields, fields.areas(), data, lengths.tolist(), order, reporter.callable)
+        bands = find_bands(fields, areas_of(fields, of_faces), data, lengths.tolist(), order,
+                           reporter.callable, of_faces)
         reporter.finish_part()
     return Spectrum(lengths, bands if np.ndim(values) == 2 else bands[:, 0])
 
 
-def _as_data(values: Any, surface: Surface) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The data in double precision, with a row per point, and a copy to be changed."""
-    data = np.asarray(as_data("values", values, surface.n_points), dtype=np.float64)
+def _as_data(
+    values: Any, surface: Surface, of_faces: bool
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The data in double precision, with a row per point or face, and a copy to be changed."""
+    rows, what = (surface.n_faces, "face") if of_faces else (surface.n_points, "point")
+    data = np.asarray(as_data("values", values, rows, what), dtype=np.float64)
     check_finite("values", data)
     return data, np.array(data)

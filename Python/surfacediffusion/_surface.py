@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._connectivity import as_polygons
 from ._settings import as_integer, as_number, as_switch, shorten
 
 _NUMBERS = "biuf"  #: kinds of numpy types: bool, integer, unsigned integer, float
@@ -179,46 +180,21 @@ def data_components(array: NDArray[Any]) -> int:
     return columns - 1 if array.dtype == np.uint8 and columns in (2, 4) else columns
 
 
+def check_areas(name: str, areas: Any, used: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """A copy of given areas of points. used: those that must be above 0."""
+    given = np.array(as_numbers(name, areas), dtype=np.float64)
+    require_shape(name, given, given.shape == used.shape, f"({len(used)},), one per point")
+    wrong = used & ~(np.isfinite(given) & (given > 0))
+    if wrong.any():
+        row = int(np.argmax(wrong))
+        raise ValueError(f"{name} has {given[row]} at point {row}; allowed: finite numbers above 0")
+    return given
+
+
 def _as_points(points: Any) -> NDArray[np.float64]:
     array = as_numbers("points", points)
     require_shape("points", array, array.shape[1:] == (3,) and len(array) > 0, "(n, 3) with n > 0")
     return np.array(array, dtype=np.float64, order="C")
-
-
-def _as_polygons(faces: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The points of all polygons in a row, and where each polygon begins."""
-    allowed = "allowed: an (m, 3) array of rows of points, or a list of polygons"
-    if np.ma.is_masked(faces):
-        raise ValueError(f"faces has masked entries; {allowed}")
-    if isinstance(faces, np.ndarray) and faces.dtype != object:
-        array = faces
-        if array.ndim != 2 or array.shape[1] < 3:
-            raise ValueError(f"faces has shape {array.shape}; {allowed}")
-        sizes = np.full(array.shape[0], array.shape[1])
-        corners = array.shape[1] - 1
-        if array.size and corners >= 3 and (array[:, 0] == corners).all():
-            raise ValueError(f"faces has shape {array.shape} and {corners} in the whole first column; "
-                             f"allowed: faces[:, 1:] for faces of {corners} points, whose number comes "
-                             f"first as in PyVista, or list(faces) for faces of {corners + 1} points that "
-                             f"all begin with point {corners}")
-        flat = array.reshape(-1)
-    else:
-        try:
-            rows = [np.asarray(face) for face in faces]
-        except (TypeError, ValueError):
-            raise ValueError(f"faces is {shorten(faces)}; {allowed}") from None
-        for number, row in enumerate(rows):
-            if row.ndim != 1 or row.size < 3:
-                raise ValueError(f"faces has {shorten(faces[number])} in row {number}; "
-                                 "allowed: three or more rows of points")
-        sizes = np.array([row.size for row in rows], dtype=np.int64)
-        flat = np.concatenate(rows) if rows else np.empty(0, dtype=np.int64)
-    if flat.size == 0:
-        raise ValueError(f"faces is empty; {allowed}")
-    if flat.dtype.kind not in "iu":
-        raise ValueError(f"faces has elements of type {flat.dtype}; allowed: integers")
-    offsets = np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(sizes, dtype=np.int64)])
-    return flat, offsets
 
 
 _surfaces: weakref.WeakSet[Surface] = weakref.WeakSet()
@@ -250,11 +226,13 @@ class Surface:
     ----------
     points : array_like, shape (n, 3)
         Coordinates in any unit of length, all finite. They are copied.
-    faces : array_like of int, shape (m, 3), or sequence of sequences
-        Rows of `points`, from 0, of each triangle or polygon. Quadrilaterals are cut along the
+    faces : array_like of int, shape (m, 3) or (m, k), or sequence of sequences
+        Rows of `points` of each triangle or polygon. Quadrilaterals are cut along the
         shorter diagonal that lies inside, larger polygons by ear cutting. The surface may have
         several components, boundaries, edges with more than two triangles, and points without
-        triangle.
+        triangle. Rows of an array may be padded at their ends, as in files of UGRID: by -1 or another
+        negative number, by a number of at least 999999 that is no point, by 0 if points count from 1, by
+        NaN or masked entries, as xarray and netCDF4 read them, or by `fill_value`.
     areas : array_like, shape (n,), optional
         The areas of the points' control cells, above 0, in place of those of `faces` (a third of the
         triangles at each point). For an average of many surfaces, which is smaller than they are:
@@ -277,17 +255,12 @@ class Surface:
         points: ArrayLike,
         faces: ArrayLike | Sequence[Sequence[int]],
         areas: ArrayLike | None = None,
+        *,
+        start_index: int | None = None,
+        fill_value: int | None = None,
     ) -> None:
         self._points = _as_points(points)
-        flat, offsets = _as_polygons(faces)
-        outside = (flat < 0) | (flat >= self.n_points)
-        if outside.any():
-            at = int(np.argmax(outside))
-            face = int(np.searchsorted(offsets, at, side="right")) - 1
-            raise ValueError(f"faces has {flat[at]} in row {face}; allowed: 0 to "
-                             f"{self.n_points - 1}, the rows of points")
-        self._connectivity = np.ascontiguousarray(flat, dtype=np.int64)
-        self._offsets = offsets
+        self._connectivity, self._offsets = as_polygons(faces, self.n_points, start_index, fill_value)
         self._core = _core.Surface(self._points, self._connectivity, self._offsets)
         self._areas = None if areas is None else self._set_areas(areas)
         self._points.setflags(write=False)
@@ -296,16 +269,63 @@ class Surface:
         self._lock = threading.RLock()  # of a run: one call at a time
         _surfaces.add(self)
 
+    @classmethod
+    def from_lonlat(
+        cls,
+        lon: ArrayLike,
+        lat: ArrayLike,
+        faces: ArrayLike | Sequence[Sequence[int]],
+        radius: float = 6371.0,
+        degrees: bool = True,
+        *,
+        areas: ArrayLike | None = None,
+        start_index: int | None = None,
+        fill_value: int | None = None,
+    ) -> Surface:
+        """A surface on the sphere, of longitudes and latitudes: of x = radius cos(lat) cos(lon),
+        y = radius cos(lat) sin(lon), z = radius sin(lat).
+
+        Parameters
+        ----------
+        lon, lat : array_like, shape (n,)
+            Of the points, finite; latitudes from -90 to 90 degrees.
+        faces, areas, start_index, fill_value
+            As for :class:`Surface`.
+        radius : float, above 0, default 6371.0
+            Of the sphere: that of the Earth in kilometres, so that lengths are in kilometres.
+        degrees : bool, default True
+            Whether `lon` and `lat` are in degrees; otherwise in radians.
+
+        Examples
+        --------
+        >>> from surfacediffusion import Surface
+        >>> octant = Surface.from_lonlat([0, 90, 0], [0, 0, 90], [[0, 1, 2]])
+        >>> octant.points.round(1)
+        array([[6371.,    0.,    0.],
+               [   0., 6371.,    0.],
+               [   0.,    0., 6371.]])
+        """
+        angles = [as_numbers(name, angle).astype(np.float64) for name, angle in (("lon", lon), ("lat", lat))]
+        require_shape("lon", lon, angles[0].ndim == 1 and angles[0].size > 0, "(n,) with n > 0")
+        require_shape("lat", lat, angles[1].shape == angles[0].shape, f"{angles[0].shape}, that of lon")
+        half = 90.0 if as_switch("degrees", degrees) else np.pi / 2
+        for name, angle, wrong in (("lon", angles[0], ~np.isfinite(angles[0])),
+                                   ("lat", angles[1], ~(np.abs(angles[1]) <= half * (1 + 1e-6)))):
+            if wrong.any():
+                point = int(np.argmax(wrong))
+                allowed = f"{-half:.6g} to {half:.6g}, in {'degrees' if degrees else 'radians'}"
+                raise ValueError(f"{name} has {angle[point]} at point {point}; allowed: "
+                                 + (allowed if name == "lat" else "finite numbers"))
+        phi, theta = np.radians(angles) if degrees else angles
+        points = np.stack([np.cos(theta) * np.cos(phi), np.cos(theta) * np.sin(phi), np.sin(theta)], axis=1)
+        return cls(as_number("radius", radius) * points, faces, areas, start_index=start_index,
+                   fill_value=fill_value)
+
     def _set_areas(self, areas: ArrayLike) -> NDArray[np.float64]:
         """Pass the areas on as factors of those of the triangles."""
-        given = np.array(as_numbers("areas", areas), dtype=np.float64)
-        require_shape("areas", given, given.shape == (self.n_points,), f"({self.n_points},), one per point")
         found = self._triangle_areas()
         used = found > 0
-        wrong = used & ~(np.isfinite(given) & (given > 0))
-        if wrong.any():
-            row = int(np.argmax(wrong))
-            raise ValueError(f"areas has {given[row]} at point {row}; allowed: finite numbers above 0")
+        given = check_areas("areas", areas, used)
         factors = np.ones(self.n_points)
         factors[used] = given[used] / found[used]
         self._core.set_area_factors(factors)

@@ -258,6 +258,21 @@ CASES = [
     ("random-field lh.surf.gii out.off --fwhm 5", "out.off: the name announces no format"),
     ("surrogates lh.surf.gii lh.func.gii out.func.gii", "has 2 columns; allowed: one surface and one column"),
     ("surrogates lh.surf.gii short.func.gii out.func.gii", "short.func.gii: "),
+    ("resample lh.surf.gii lh.surf.gii short.func.gii out.func.gii", "short.func.gii: .*; allowed: "),
+    ("resample lh.surf.gii lh.surf.gii lh.func.gii out.func.gii --method nearest", "--method is 'nearest'; allowed: "
+     "Barycentric, AdaptiveBarycentricArea"),
+    ("resample lh.surf.gii lh.surf.gii a.dscalar.nii out.func.gii", "a.dscalar.nii: a CIFTI file, .*; allowed: data "
+     "of one surface"),
+    ("resample lh.surf.gii lh.surf.gii lh.func.gii out.func.gii --source-areas short.func.gii", "short.func.gii: "),
+    ("resample lh.surf.gii lh.func.gii lh.func.gii out.func.gii", "lh.func.gii: a GIFTI file with .* no surface"),
+    ("resample lh.surf.gii lh.surf.gii lh.func.gii out.off", "out.off: the name announces no format"),
+    ("resample lh.surf.gii lh.surf.gii right.func.gii out.func.gii", "data of CortexRight, but lh.surf.gii is of"),
+    ("resample lh.surf.gii lh.surf.gii lh.func.gii lh.func.gii --roi lh.func.gii", "lh.func.gii, which is read"),
+    ("-metric-resample lh.func.gii lh.surf.gii lh.surf.gii ADAP_BARY_AREA out.func.gii", "ADAP_BARY_AREA without "
+     "areas; allowed: -area-surfs or -area-metrics"),
+    ("-metric-resample lh.func.gii lh.surf.gii lh.surf.gii NEAREST out.func.gii", "invalid choice: 'NEAREST'"),
+    ("-metric-resample lh.func.gii lh.surf.gii lh.surf.gii BARYCENTRIC out.func.gii -largest", "-largest is not "
+     "here; allowed: wb_command"),
     ("scale-filter lh.surf.gii lh.func.gii 0 out.func.gii", "argument WAVELENGTH: is '0'"),
     ("scale-filter lh.surf.gii lh.func.gii 5 out.func.gii --order 3", "argument --order: invalid choice"),
     ("spectrum lh.surf.gii lh.func.gii 9 5", "the WAVELENGTHs are not ascending"),

@@ -24,9 +24,9 @@ WORDS = {
     "curvature": "s.off out.npy", "derivatives": "s.off v.npy out.npy", "distance": "s.off out.npy --from 0",
     "normals": "s.off out.npy", "fwhm": "s.off many.npy", "scale-filter": "s.off v.npy 0.3 out.npy",
     "spectrum": "s.off v.npy 0.3 3", "random-field": "s.off out.npy --fwhm 0.3",
-    "surrogates": "s.off v.npy out.npy", "info": "s.off v.npy"}
+    "surrogates": "s.off v.npy out.npy", "resample": "s.off s.off v.npy out.npy", "info": "s.off v.npy"}
 #: Words of other programs, and that without files.
-OTHERS = {"metric-smoothing", "cifti-smoothing", "doctor"}
+OTHERS = {"metric-smoothing", "cifti-smoothing", "metric-resample", "doctor"}
 
 
 class CoarseFiles(unittest.TestCase):

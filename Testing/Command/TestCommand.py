@@ -761,7 +761,7 @@ class Reports(CommandTest):
         _, out, _ = run("--help")
         commands = ("smooth", "metric-smoothing", "denoise", "denoise-mesh", "inpaint", "interpolate", "segment",
                     "refine", "texture", "directions", "curvature", "derivatives", "distance", "normals", "fwhm",
-                    "scale-filter", "spectrum", "random-field", "surrogates", "info")
+                    "scale-filter", "spectrum", "random-field", "surrogates", "resample", "metric-resample", "info")
         for command in commands:
             self.assertIn(command, out)
             code, text, _ = run(command, "--help")

@@ -411,7 +411,7 @@ class Sentences(ForeignTest):
     def test_commands_of_workbench_are_answered_with_those_that_are_here(self):
         for word, here in (("-metric-gradient", "derivatives"), ("-surface-geodesic-distance", "distance")):
             self.refused(f"^surfacediffusion: {word} is a command of Workbench .*; allowed: surfacediffusion "
-                         f"{here}, or -metric-smoothing and -cifti-smoothing", word, "a", "b", "c")
+                         f"{here}, or -metric-smoothing, -cifti-smoothing, -metric-resample", word, "a", "b", "c")
 
     def test_the_advice_about_seams_works(self):
         corners = np.arange(3 * len(FACES)).reshape(-1, 3)

@@ -79,12 +79,18 @@ class SameBits(unittest.TestCase):
         for name, array in (("v", values), ("roi", 1.0 - outside), ("few", sparse), ("speed", speed),
                             ("vectors", columns(-y, x, z)), ("marks", np.where(x > 8, 4, 7 * (y > 8)))):
             np.save(name + ".npy", array)
+        of_faces, inner = random.normal(size=s.n_faces), np.arange(s.n_faces) < s.n_faces // 2
+        np.save("f.npy", of_faces)
+        np.save("inner.npy", inner.astype(float))
+        np.save("b.off.npy", np.where(sphere(2, 30.0)[0] > 0, 1.0, 0.0))
         masked = {"mask": outside, "mask_mode": "Exclude"}
         inside = np.where(outside[:, None], 0, values)
         one, two = values.T
         curved = sd.curvature(s, fwhm=4.0)
         texture = dict(feature_size=8.0, seed=1, number_of_time_steps=5, refine_to=0)
         fine = sd.refine(s, 1.5)
+        Path("b.off").write_text(off_text(*sphere(2, 30.0)))
+        ball = sd.Surface(*sphere(2, 30.0))
 
         def each(function, *arguments, **keywords):
             return columns(*(function(*arguments[:1], column, *arguments[1:], **keywords)
@@ -99,6 +105,8 @@ class SameBits(unittest.TestCase):
             ("denoise a.off v.npy out.npy --weight 3",
              each(sd.intrinsic_tv, s, mode="SteadyState", fidelity_weight=3)),
             ("inpaint a.off few.npy out.npy", sd.heat(s, sparse, mode="SteadyState", hold_known_values=True)),
+            ("inpaint a.off few.npy out.npy --intrinsic-delaunay",
+             sd.heat(s, sparse, mode="SteadyState", hold_known_values=True, intrinsic_delaunay=True)),
             ("inpaint a.off few.npy out.npy --model tv",
              sd.intrinsic_tv(s, sparse, mode="SteadyState", hold_known_values=True)),
             ("interpolate a.off few.npy out.npy --smoothing 0.01", sd.interpolate(s, sparse, smoothing=0.01)),
@@ -126,6 +134,16 @@ class SameBits(unittest.TestCase):
             ("random-field a.off out.npy --range 9 --nu 3", sd.random_field(s, range=9, nu=3)),
             ("surrogates a.off v.npy out.npy --column 2 --count 4", sd.surrogates(s, two, 4).values),
             ("scale-filter a.off v.npy 12 out.npy --order 2", sd.scale_filter(s, values, 12, order=2)),
+            ("resample a.off b.off v.npy out.npy --roi roi.npy", np.nan_to_num(
+                sd.resample(s, ball, values, mask=outside))),
+            ("resample b.off a.off b.off.npy out.npy --method Barycentric --labels",
+             sd.resample(ball, s, ball.points > 0, method="Barycentric")),
+            ("metric-resample v.npy a.off b.off ADAP_BARY_AREA out.npy -area-surfs a.off b.off",
+             sd.resample(s, ball, values)),
+            ("scale-filter a.off f.npy 12 out.npy --order 2 --faces", sd.scale_filter(s, of_faces, 12, order=2)),
+            ("scale-filter a.off f.npy 12 out.npy --faces --roi inner.npy",
+             np.nan_to_num(sd.scale_filter(s, of_faces, 12, roi=inner))),
+            ("spectrum a.off f.npy 8 16 --faces", sd.spectrum(s, of_faces, [8, 16]).variance),
             ("refine a.off 1.5 fine.off --data v.npy out.npy", fine.at_points(values)),
             ("denoise-mesh rough.off out.off --noise 0.1", sd.denoise_mesh(r, noise_level=0.1).points),
             ("spectrum a.off v.npy 8 16 --column 2", sd.spectrum(s, two, [8, 16]).variance),

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Models/Fields/CellScaleFilter.h"
 #include "Core/Models/Fields/FunctionDiagonal.h"
 #include "Core/Models/Fields/RandomField.h"
 #include "Core/Models/Fields/ScaleFilter.h"
@@ -179,6 +180,40 @@ TEST(ResolventPolynomial, KeepsConstantsAndIntegralsOfComponents)
       }
       EXPECT_LT(std::abs(change), 1e-14 * total);
     }
+  }
+}
+
+// On cells, which are pairs of triangles and single ones, in two parts, one of which has a boundary.
+TEST(CellScaleFilter, KeepsConstantsAndIntegralsOfEachPart)
+{
+  const Testing::Surface s = Joined(Icosphere(2), Moved(Strip(20, 6, 4.0, 1.0), { 5.0, 0.0, 0.0 }));
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  std::vector<Index> cells;
+  const Index ofBall = Icosphere(2).NumberOfTriangles();
+  for (Index t = 0; t < s.NumberOfTriangles(); ++t)
+  {
+    cells.push_back(t < ofBall ? t : ofBall + (t - ofBall) / 2); // the triangles of a square follow
+  }
+  const Index count = cells.back() + 1;
+  Values before(count, 2);
+  for (Index c = 0; c < count; ++c)
+  {
+    before(c, 0) = 1e6;
+    before(c, 1) = 2.0 + std::sin(37.0 * c);
+  }
+  for (const int order : { 1, 2 })
+  {
+    CellScaleFilter filter(
+      assembler, s.Vertices, cells, count, Vector::Constant(mesh.NumberOfVertices(), 4.0), order);
+    Values f = before;
+    filter.Apply(f);
+    EXPECT_LT((f.col(0).array() / 1e6 - 1.0).abs().maxCoeff(), 1e-13);
+    EXPECT_GT(
+      (f.col(1) - before.col(1)).norm(), 0.3 * (before.col(1).array() - 2.0).matrix().norm());
+    const Vector moved = filter.CellAreas().cwiseProduct(f.col(1) - before.col(1));
+    EXPECT_LT(std::abs(moved.head(ofBall).sum()), 1e-13 * filter.CellAreas().sum());
+    EXPECT_LT(std::abs(moved.tail(count - ofBall).sum()), 1e-13 * filter.CellAreas().sum());
   }
 }
 

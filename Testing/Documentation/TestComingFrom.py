@@ -35,6 +35,7 @@ PAGE = (ROOT / "Documentation/coming_from.md").read_text(encoding="utf-8")
 POINTS, FACES = samples.sphere(5, 50.0)
 N = len(POINTS)
 RNG = np.random.default_rng(1)
+TURN = np.linalg.qr(np.array([[2.0, 1.0, 0.0], [0.0, 2.0, 1.0], [1.0, 0.0, 2.0]]))[0]
 
 
 def noise(count, fwhm=8):
@@ -59,6 +60,10 @@ def write_files():
     for side, name in (("L", "Left"), ("R", "Right")):
         samples.write_surface(f"{side}.midthickness.surf.gii", POINTS, FACES, f"Cortex{name}")
     samples.write_gifti("L.thickness.shape.gii", {"thickness": maps[:, 0]})
+    other, faces = samples.sphere(4, 100.0)
+    for name in ("fsLR.L.sphere.surf.gii", "fsLR.L.midthickness.surf.gii"):
+        samples.write_surface(name, other @ TURN, faces)
+    samples.write_surface("L.sphere.surf.gii", 2 * POINTS, FACES)
     samples.write_gifti("L.roi.shape.gii", {"roi": cortex})
     ball = np.linalg.norm(np.indices((20, 20, 20)).T - [9, 9, 9], axis=-1) < 7
     models = (cifti2.BrainModelAxis.from_surface(np.flatnonzero(cortex), N, "CORTEX_LEFT")
@@ -73,7 +78,10 @@ def write_files():
     os.makedirs("bert/surf")
     os.makedirs("bert/label")
     os.mkdir("smoothed")
-    samples.write_surface("bert/surf/lh.white", POINTS, FACES)
+    os.makedirs("fsaverage5/surf")
+    for name in ("lh.white", "lh.sphere.reg"):
+        samples.write_surface(f"bert/surf/{name}", POINTS, FACES)
+        samples.write_surface(f"fsaverage5/surf/{name}", other @ TURN, faces)
     nib.freesurfer.write_morph_data("bert/surf/lh.thickness", maps[:, 0], fnum=len(FACES))
     for name in ("sub-01.thickness.mgh", "sub-02.thickness.mgh"):
         samples.write_mgh(name, maps[:, 0])

@@ -57,11 +57,11 @@ def turn(points):
     return points + np.sin(angle) * across + (1.0 - np.cos(angle)) * np.cross(axis, across)
 
 
-def arguments(function, name, values, vectors, length):
+def arguments(function, name, values, vectors, length, target=None):
     """No more than a function must have."""
     given = {"values": values, "times": values, "vectors": vectors, "sources": 0, "n": 3,
              "residuals": np.outer(values, [1, 2, -3]) ** 2, "height": 0.03 * length, "length": length,
-             "wavelength": length, "wavelengths": [length, 3 * length], "fwhm": length}
+             "target": target, "wavelength": length, "wavelengths": [length, 3 * length], "fwhm": length}
     more = {"heat": ["fwhm"], "heat_steps": ["fwhm"], "random_field": ["fwhm"], "segment": ["values"]}
     parameters = [*inspect.signature(function).parameters.values()][1:]
     found = {parameter.name: given[parameter.name] for parameter in parameters
@@ -122,7 +122,7 @@ class CoarseSurfaces(unittest.TestCase):
                 with self.subTest(function=name):
                     found = []
                     for surface, turned in surfaces:
-                        keywords = arguments(function, name, values, turned, length)
+                        keywords = arguments(function, name, values, turned, length, surface)
                         result, warned = self.tried(lambda: without_frame(function(surface, **keywords)))
                         found.append(result)
                         if result is not None:

@@ -23,6 +23,7 @@ try:
     import nibabel as nib
     import pyvista
     import trimesh
+    from nilearn.image import smooth_img as nilearn_smooth_img
     from nilearn.surface import InMemoryMesh, PolyMesh, SurfaceImage
 except ImportError as missing:
     print(missing)
@@ -211,6 +212,20 @@ class Images(unittest.TestCase):
                         roi=inside["left"], **ONE_STEP)
         np.testing.assert_allclose(self.part(smooth, "left")[:, 0], expected, atol=1e-12)
 
+    def test_no_width_keeps_the_values_inside_the_mask_as_nilearn_does(self):
+        self.data["left"][7, 1] = np.nan
+        mask = SurfaceImage(self.mesh, {k: (POINTS[:, 2] > -10).astype(np.float32) for k in self.data})
+        for fwhm in (0, 0.0, None):
+            smooth = smooth_img(self.image, fwhm)
+            masked = smooth_img(self.image, fwhm, mask_img=mask)
+            theirs = nilearn_smooth_img(self.image, fwhm)
+            for name, values in self.data.items():
+                np.testing.assert_array_equal(self.part(smooth, name), values)
+                np.testing.assert_array_equal(self.part(theirs, name), np.nan_to_num(values))
+                self.assertFalse(np.shares_memory(self.part(smooth, name), values))
+                expected = np.where(POINTS[:, 2:] > -10, values, 0)
+                np.testing.assert_array_equal(self.part(masked, name), expected)
+
     def test_lists_types_and_one_dimension(self):
         flat = SurfaceImage(self.mesh, {k: v[:, 0].astype(np.float32) for k, v in self.data.items()})
         found = smooth_img([flat, self.image], 10)
@@ -232,8 +247,8 @@ class Images(unittest.TestCase):
         for image in (self.mesh, "image.gii", None):
             with self.assertRaisesRegex(ValueError, "img is .*; allowed: a SurfaceImage of nilearn"):
                 smooth_img(image, 10)
-        for fwhm in (0, -1, None, np.nan, [10]):
-            with self.assertRaisesRegex(ValueError, "fwhm is .*; allowed: finite numbers above 0"):
+        for fwhm in (-1, False, np.nan, np.inf, [10]):
+            with self.assertRaisesRegex(ValueError, "fwhm is .*; allowed: finite numbers, 0 or more, or None"):
                 smooth_img(self.image, fwhm)
         with self.assertRaisesRegex(ValueError, "mask_img is .*; allowed: a SurfaceImage"):
             smooth_img(self.image, 10, mask_img=self.data)

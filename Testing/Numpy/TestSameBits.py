@@ -44,6 +44,7 @@ WITHOUT_FILTER = {
     **dict.fromkeys(("estimate_fwhm_img", "smooth_img"), "functions above, for images of nilearn"),
     **dict.fromkeys(("mass_matrix", "stiffness_matrix", "gradient_matrix", "eigenmodes", "scale_filter"),
                     "matrices of Core, in coordinates"),
+    "resample": "weights of Core, between two surfaces",
     **dict.fromkeys(("refine", "sphere", "on_faces", "on_points", "get_number_of_threads",
                      "set_number_of_threads"), "no computation on data"),
 }

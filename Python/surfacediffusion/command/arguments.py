@@ -8,7 +8,8 @@ import os
 import re
 
 from . import (
-    denoising, distances, doctor, edges, fields, filling, info, parts, scales, shape, smoothing)
+    denoising, distances, doctor, edges, fields, filling, info, parts, resampling, scales, shape,
+    smoothing)
 from .common import PROGRAM, SIDES, Command, Commands, Parser
 from .inputs import ArgumentProblem
 
@@ -38,27 +39,32 @@ COMMANDS = (
     scales.add_spectrum,
     fields.add_random_field,
     fields.add_surrogates,
+    resampling.add_resample,
+    resampling.add_metric_resample,
     info.add_info,
     doctor.add_doctor,
 )
 
 
-#: What commands of Workbench are here
+#: The commands with Workbench's names and arguments
+SAME_WORDS = ("-metric-smoothing", "-cifti-smoothing", "-metric-resample")
+
+#: What other commands of Workbench are here
 WORKBENCH = {
     "-metric-gradient": "derivatives", "-cifti-gradient": "derivatives", "-metric-dilate": "inpaint",
     "-cifti-dilate": "inpaint", "-metric-estimate-fwhm": "fwhm", "-cifti-estimate-fwhm": "fwhm",
     "-surface-geodesic-distance": "distance", "-surface-curvature": "curvature",
-    "-surface-information": "info", "-file-information": "info",
+    "-surface-information": "info", "-file-information": "info", "-label-resample": "resample",
 }
 
 
 def parse(argv):
     """The arguments of the command line, with the function that carries them out as `run`."""
-    if argv and argv[0] in ("-metric-smoothing", "-cifti-smoothing"):  # as after wb_command
+    if argv and argv[0] in SAME_WORDS:  # as after wb_command
         argv = [argv[0][1:], *argv[1:]]
     elif argv and argv[0] in WORKBENCH:
         raise ArgumentProblem(f"{argv[0]} is a command of Workbench with arguments of its own; allowed: "
-                              f"{PROGRAM} {WORKBENCH[argv[0]]}, or -metric-smoothing and -cifti-smoothing")
+                              f"{PROGRAM} {WORKBENCH[argv[0]]}, or {', '.join(SAME_WORDS)}")
     # A CIFTI file has a surface per hemisphere, by --left and --right instead of SURFACE.
     hemispheres = any(word.split("=")[0] in SIDES for word in argv) or (
         len(argv) > 1 and re.search(r"\.d[a-z]+\.nii$", argv[1]) is not None)

@@ -130,6 +130,10 @@ def region_and_columns(parser):
                              "FILE may be a FreeSurfer .label, or FILE:LABEL for one label of an "
                              "atlas, by its name or number: lh.aparc.annot:precentral (also of "
                              ".label.gii and .dlabel.nii)")
+    zeros_and_columns(parser)
+
+
+def zeros_and_columns(parser):
     parser.add_argument("--fix-zeros", "-fix-zeros", action="store_true",
                         help="zeros mean missing, as NaN does")
     parser.add_argument("--column", "-column", action="append", metavar="N|NAME", default=[],

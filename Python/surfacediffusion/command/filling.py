@@ -34,6 +34,9 @@ def add_inpaint(commands):
     parser.add_argument("--model", choices=("heat", "tv"), default="heat",
                         help="heat: harmonic functions, smooth (default); tv: total variation, "
                              "which continues edges")
+    parser.add_argument("--intrinsic-delaunay", action="store_true",
+                        help="flip edges along the surface first, for triangles with obtuse angles: with heat, "
+                             "no value then leaves the range of its neighbours'")
 
 
 def inpaint(arguments, report):
@@ -45,7 +48,7 @@ def inpaint(arguments, report):
         if not np.isnan(values).any():
             return values
         return model(surface, values, on_faces=arguments.faces, mode="SteadyState",
-                     hold_known_values=True, **run)
+                     hold_known_values=True, intrinsic_delaunay=arguments.intrinsic_delaunay, **run)
 
     change_data(arguments, report, "Inpainting", compute, groups, arguments.missing)
     if not any(row["missing"] for row in report.facts["columns"]):

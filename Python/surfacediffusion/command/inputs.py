@@ -12,6 +12,7 @@ import numpy as np
 
 from .._surface import Surface
 from ..files import Data, FileError, Part, SurfaceFile, read_data, read_surface
+from ..files.content import read_content
 from ..files.data import NO_VERTICES
 from ..files.surface import structure_of_name
 
@@ -54,8 +55,10 @@ class Patch:
 
 
 #: The arguments that name what a command writes, and what it reads beside DATA
-_OUTPUTS = {"output": "OUTPUT", "map": "--map", "curves": "--curves", "nearest": "--nearest", "error": "--error"}
-_INPUTS = ("surface", *SIDES, "roi", "areas", "missing", "residuals", "fixed", "speed", "sources", "values")
+_OUTPUTS = {"output": "OUTPUT", "map": "--map", "curves": "--curves", "nearest": "--nearest", "error": "--error",
+            "valid": "-valid-roi-out"}
+_INPUTS = ("surface", *SIDES, "roi", "areas", "missing", "residuals", "fixed", "speed", "sources", "values",
+           "source", "target", "source_areas", "target_areas")
 
 
 def check_files(arguments):
@@ -229,9 +232,10 @@ def _range_text(names):
     return numbers + (f" ({', '.join(shown[:6])}{more})" if shown else "")
 
 
-def make_patches(surfaces, data: Data, columns, arguments):
-    """The values on each surface, with what is missing and what is excluded."""
-    if data.labels:
+def make_patches(surfaces, data: Data, columns, arguments, labels=False):
+    """The values on each surface, with what is missing and what is excluded. labels: whether numbers of
+    labels are allowed."""
+    if data.labels and not labels:
         raise FileError(f"{data.path}: labels, which have no mean; allowed: real values")
     regions = {}
     if arguments.roi is not None:
@@ -319,10 +323,28 @@ def read_areas(path, surfaces):
         wrong = ~(np.isfinite(areas) & (areas > 0))
         if wrong.any():
             vertex = int(np.argmax(wrong))
-            raise FileError(f"{path}: the area of vertex {vertex} is {areas[vertex]:g}; allowed: "
+            raise FileError(f"{data.path}: the area of vertex {vertex} is {areas[vertex]:g}; allowed: "
                             "finite numbers above 0")
         found[id(surface)] = areas
     return found
+
+
+def read_areas_or_surface(path, sphere: SurfaceFile):
+    """The areas of the vertices of a sphere: those of the surface in the file, or its first column; None
+    without a file."""
+    if path is None:
+        return None
+    content = read_content(path)
+    try:
+        surface = lengths_of(read_surface(content))
+    except FileError as error:
+        if "no surface" not in str(error):
+            raise
+        return read_areas(content, {"": sphere})[id(sphere)]
+    if len(surface.points) != len(sphere.points):
+        raise FileError(f"{path}: {len(surface.points)} points, but {sphere.path} has {len(sphere.points)}; "
+                        "allowed: the surface of the same vertices, or their areas")
+    return vertex_areas(surface)
 
 
 def _regions(arguments, surfaces, on_faces, own, columns):

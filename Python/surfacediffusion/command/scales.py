@@ -8,6 +8,7 @@ import numpy as np
 from .. import estimate_fwhm
 from .. import scale_filter as separate
 from .. import spectrum as measure
+from .._surface import place
 from . import common, inputs
 from .report import number, number_text
 from .stages import change_data, columns_of_missing, read, require_known
@@ -55,14 +56,15 @@ def add_scale_filter(commands):
     common.output(parser)
     common.order(parser, 1)
     common.region_and_columns(parser)
+    common.faces(parser)
 
 
 def scale_filter(arguments, report):
     report.facts.update(wavelength=arguments.wavelength, order=arguments.order)
 
     def compute(surface, values, mask, progress, **_):
-        return separate(surface, values, arguments.wavelength, order=arguments.order, mask=mask,
-                        progress=progress)
+        return separate(surface, values, arguments.wavelength, order=arguments.order,
+                        on_faces=arguments.faces, mask=_at_place(arguments, mask), progress=progress)
 
     change_data(arguments, report, "Scales", compute, columns_of_missing,
                 say=lambda _: f"wavelength {arguments.wavelength:g}")
@@ -77,6 +79,7 @@ def add_spectrum(commands):
     common.wavelength(parser, "wavelengths", ", ascending", "+")
     common.order(parser, 2)
     common.region_and_columns(parser)
+    common.faces(parser)
 
 
 def spectrum(arguments, report):
@@ -93,9 +96,15 @@ def spectrum(arguments, report):
             require_known(patch, [i], data, columns)
             with report.timed("compute"):
                 found = measure(solver, patch.values[:, i].astype(float), arguments.wavelengths,
-                                order=arguments.order, mask=patch.excluded_of(i))
+                                order=arguments.order, on_faces=arguments.faces,
+                                mask=_at_place(arguments, patch.excluded_of(i)))
             rows.append({"name": data.names[column], "structure": patch.part.structure,
                          "variance": [number(value) for value in found.variance]})
             report.say(f"{column + 1} {data.names[column]}:")
             for low, high, value in zip(bounds, bounds[1:], found.variance):
                 report.say(f"  {low} to {high}: {value:.4g}")
+
+
+def _at_place(arguments, mask):
+    """The mask, at faces if the data are there."""
+    return mask if mask is None else place(mask, arguments.faces)

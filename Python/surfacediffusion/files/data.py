@@ -6,7 +6,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -116,6 +116,19 @@ class Data:
             known.save(path, self, values, columns)
         else:
             write_atomically(path, known.write(self, values, columns))
+
+
+def data_for(surface, path, data, columns) -> Data:
+    """Data for these columns of `data` at the vertices of another surface, zero at first: in its format and
+    with its metadata, or in another format that the name of the output announces."""
+    names, given = [data.names[c] for c in columns], data.parts[0]
+    resize = _RESIZED.get(data.kind)
+    if resize is None or kind_of_name(path) not in (None, data.kind):
+        return new_data(surface, path, names)
+    data.check_name(path)
+    part = Part(np.zeros((len(surface.points), len(columns)), given.values.dtype), structure=given.structure)
+    return replace(data, names=names, parts=[part], usual=range(len(columns)),
+                   image=resize(data.image, surface, columns))
 
 
 def read_data(path, on_faces=False) -> Data:
@@ -401,4 +414,13 @@ _FORMATS = {
     "vtk": _Format(_read_vtk, _write_vtk, on_faces=True),
     "vtp": _Format(_read_vtk, _write_vtk, on_faces=True),
     "vtu": _Format(_read_vtk, _write_vtk, on_faces=True),
+}
+
+#: What makes the image of a format one for some of its columns on another surface
+_RESIZED: dict[str, Callable[[Any, Any, Sequence[int]], Any]] = {
+    "gifti": lambda image, surface, columns: gifti_data.without_numbers(image[0], [image[1][c] for c in columns]),
+    "curv": lambda image, surface, columns: len(surface.faces),
+    "mgh": lambda image, surface, columns: freesurfer_data.resized_mgh(image, len(surface.points)),
+    "npy": lambda image, surface, columns: image,
+    "text": lambda image, surface, columns: _new_text(surface, columns),
 }

@@ -73,6 +73,14 @@ def new_mgh(surface, names):
     return freesurfer.MGHImage(np.zeros((len(surface.points), 1, 1), np.float32), np.eye(4))
 
 
+def resized_mgh(image, count):
+    """An image with as many columns for another number of vertices."""
+    shape = (count, 1, 1) + tuple(image.shape[3:4])
+    header = image.header.copy()
+    header.set_data_dtype(np.float32)
+    return type(image)(np.zeros(shape, np.float32), image.affine, header)
+
+
 # ---- label: lines of "vertex x y z value" --------------------------------------------------------
 
 def read_label(content):

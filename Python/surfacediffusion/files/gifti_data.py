@@ -132,12 +132,21 @@ def write(image, places, values):
         if not chosen:
             continue
         array = copy.copy(array)
-        data = np.asarray(values)[:, chosen].astype(np.float32)
+        are_labels = array.intent == _LABEL_INTENT
+        data = np.asarray(values)[:, chosen].astype(np.int32 if are_labels else np.float32)
         array.data = data[:, 0] if image.darrays[i].data.ndim == 1 else data
         array.dims = list(array.data.shape)
-        array.datatype = _FLOAT32
+        array.datatype = _INT32 if are_labels else _FLOAT32
         changed.darrays.append(array)
     return changed.to_bytes()
+
+
+def without_numbers(image, places):
+    """The image and its columns for data at all vertices, without numbers of those that have some."""
+    kept = [i for i, array in enumerate(image.darrays) if array.intent != _INDEX_INTENT]
+    changed = copy.copy(image)
+    changed.darrays = [image.darrays[i] for i in kept]
+    return changed, [(kept.index(i), j) for i, j in places]
 
 
 def new(surface, names):

@@ -4,6 +4,7 @@
 
 #include "Core/Foundation/Columns.h"
 #include "Core/Foundation/Resize.h"
+#include "Core/Models/Fields/ResolventSeries.h"
 #include "Core/Solvers/SolverChoice.h"
 
 #include <algorithm>
@@ -100,7 +101,6 @@ void ResolventPolynomial::Apply(Values& u, const ProgressMonitor& progress)
   }
 }
 
-/// Clenshaw's recurrence for the Chebyshev polynomials of 2 Y - 1.
 void ResolventPolynomial::ApplyToPanel(Values& u, const ProgressMonitor& progress)
 {
   // Values are measured from their mean, so that the errors of the solves are relative to the
@@ -108,26 +108,12 @@ void ResolventPolynomial::ApplyToPanel(Values& u, const ProgressMonitor& progres
   Eigen::RowVectorXd mean;
   FindMeans(this->Assembly->Mesh(), u, mean, this->Parallel);
   u.rowwise() -= mean;
-  const auto n = static_cast<Index>(u.rows());
-  const std::size_t degree = this->Series.size() - 1;
-  Values b = this->Series[degree] * u;
-  Values next = Values::Zero(u.rows(), u.cols());
-  Values y;
-  for (std::size_t k = degree; k-- > 0;)
-  {
-    const auto all = static_cast<double>(degree);
-    const double done = static_cast<double>(degree - 1 - k) / all;
-    this->Solve(b, y, progress.Part(done, done + 1.0 / all));
-    const double twice = k == 0 ? 1.0 : 2.0;
-    ForEach(this->Parallel, n,
-      [&](Index i) {
-        next.row(i) =
-          this->Series[k] * u.row(i) + twice * (2.0 * y.row(i) - b.row(i)) - next.row(i);
-      });
-    std::swap(b, next);
-  }
+  SumResolvents(
+    this->Series, u,
+    [&](const Values& b, Values& y, const ProgressMonitor& part) { this->Solve(b, y, part); },
+    this->Parallel, progress);
   const double ofConstants = SumChebyshev(this->Series, 1.0);
-  u = b.rowwise() + ofConstants * mean;
+  u.rowwise() += ofConstants * mean;
 }
 
 /// x = Y b.

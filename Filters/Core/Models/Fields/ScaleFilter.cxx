@@ -25,24 +25,39 @@ double SecondOrder(double y)
 
 } // namespace
 
-ResolventPolynomial MakeScaleFilter(std::shared_ptr<const Assembler> assembler,
-  const Vector& wavelengths, int order, const ParallelFor& parallel)
+std::vector<double> ScaleFilterSeries(int order)
 {
-  const TriangleMesh& mesh = assembler->Mesh();
+  return order == 1 ? std::vector<double>{ 0.5, 0.5 }
+                    : ChebyshevSeries(&SecondOrder, DegreeOfSecondOrder);
+}
+
+Vector ScaleFilterDiffusivities(
+  const TriangleMesh& mesh, const Vector& wavelengths, int order, const ParallelFor& parallel)
+{
   const double pi = std::acos(-1.0);
   const double factor = (order == 1 ? 2.0 : std::sqrt(2.0)) / (4.0 * pi * pi);
-  const Vector squares = factor * wavelengths.cwiseAbs2();
-  CornerWeights coefficients = CotanWeights(mesh, parallel);
+  Vector ofTriangles(mesh.NumberOfTriangles());
   ForEach(parallel, mesh.NumberOfTriangles(),
     [&](Index t)
     {
       const auto corners = mesh.TriangleVertices().row(t);
-      coefficients.row(t) *=
-        (squares[corners[0]] + squares[corners[1]] + squares[corners[2]]) / 3.0;
+      const auto square = [&](int a)
+      { return factor * wavelengths[corners[a]] * wavelengths[corners[a]]; };
+      ofTriangles[t] = (square(0) + square(1) + square(2)) / 3.0;
     });
-  std::vector<double> series = order == 1 ? std::vector<double>{ 0.5, 0.5 }
-                                          : ChebyshevSeries(&SecondOrder, DegreeOfSecondOrder);
-  const double largestStep = squares.size() > 0 ? squares.maxCoeff() : 1.0;
+  return ofTriangles;
+}
+
+ResolventPolynomial MakeScaleFilter(std::shared_ptr<const Assembler> assembler,
+  const Vector& wavelengths, int order, const ParallelFor& parallel)
+{
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Vector diffusivities = ScaleFilterDiffusivities(mesh, wavelengths, order, parallel);
+  CornerWeights coefficients = CotanWeights(mesh, parallel);
+  ForEach(
+    parallel, mesh.NumberOfTriangles(), [&](Index t) { coefficients.row(t) *= diffusivities[t]; });
+  std::vector<double> series = ScaleFilterSeries(order);
+  const double largestStep = diffusivities.size() > 0 ? diffusivities.maxCoeff() : 1.0;
   auto solver = MakeResolventSolver(mesh, largestStep, series, parallel);
   return { std::move(assembler), coefficients, 1.0, std::move(series), std::move(solver),
     parallel };

@@ -19,4 +19,10 @@ namespace SurfaceDiffusion
 ResolventPolynomial MakeScaleFilter(std::shared_ptr<const Assembler> assembler,
   const Vector& wavelengths, int order, const ParallelFor& parallel = SerialFor());
 
+/// Its parts: the filter is p(Y) with Y = (1 + L)^-1, the diffusivities of L, per triangle, and the
+/// Chebyshev series of p. The arguments are the same.
+std::vector<double> ScaleFilterSeries(int order);
+Vector ScaleFilterDiffusivities(const TriangleMesh& mesh, const Vector& wavelengths, int order,
+  const ParallelFor& parallel = SerialFor());
+
 } // namespace SurfaceDiffusion
