@@ -182,8 +182,8 @@ Vector SupernodalFactor::InverseDiagonal(const ParallelFor& parallel,
     };
     for (std::size_t e = 0; others && e < othersOf[s].size(); ++e)
     {
-      InverseEntry& entry = *othersOf[s][e];
-      entry.Value = all(inRows(entry.Row), inRows(entry.Column));
+      InverseEntry& other = *othersOf[s][e];
+      other.Value = all(inRows(other.Row), inRows(other.Column));
     }
     if (nodes.ChildrenBegin[s] < nodes.ChildrenBegin[s + 1])
     {
