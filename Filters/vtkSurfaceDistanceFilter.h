@@ -130,6 +130,15 @@ public:
    */
   SURFACEDIFFUSION_SWITCH(ComputeGradient);
 
+  /**
+   * On: the distance is below 0 on one side. The sources of array 0 are a region, and the distance is
+   * that to its boundary, a smooth line between its points and those around it, below 0 within. The
+   * lines on port 1 are closed ones, and it is that to the shortest paths from one of their points to
+   * the next, below 0 on the side of the smaller area; lines that do not divide the surface into two
+   * sides are an error. Not with speeds and start times. Default: off.
+   */
+  SURFACEDIFFUSION_SWITCH(Signed);
+
   ///@{
   /**
    * Of the last update: the number of sources that counted (points with a nonzero value; on port 1,

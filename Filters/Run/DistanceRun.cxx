@@ -38,6 +38,13 @@ void DistanceSettings::Visit(SettingVisitor& visitor)
                    "On: the gradient of the result is added, vectors in the tangent planes that "
                    "point away from the sources." },
     this->ComputeGradient);
+  visitor.Switch(
+    { "Signed", "",
+      "On: the distance is that to the boundary of the region of the sources, between "
+      "them and the points around it, and below 0 within. To closed lines it is below 0 on the "
+      "smaller side.",
+      "!SpeedArray and !SourceTimes" },
+    this->Signed);
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
 
@@ -71,6 +78,9 @@ void DistanceSettings::Check(const FieldSummary* fields, Problems& problems)
     Sentence(Word::Setting("AlongSpeed"))
       << " " << this->AlongSpeed << " and " << Word::Setting("AcrossSpeed") << " "
       << this->AcrossSpeed);
+  Require(!this->Signed || !(fields->Speeds || fields->StartTimes || this->HasSpeed()),
+    Sentence(Word::Setting("Signed")), Word::SwitchNumber(this->Signed),
+    Sentence(Word::SwitchNumber(false)) << " together with speeds and start times", problems);
   RequireDirections(
     *fields, "AlongSpeed", this->AlongSpeed, "AcrossSpeed", this->AcrossSpeed, problems);
 }
@@ -247,13 +257,20 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
   const TriangleMesh& mesh = this->Domain->InputMesh();
   const Fields fields = this->ReadFields(input);
   this->TakeSpeeds(fields, settings);
-  SourceSet sources =
-    this->FindSources(drawn, fields, settings.MaximumDistance, progress.Part(0.2, 0.3));
+  const ProgressMonitor ofSources = progress.Part(0.2, 0.3);
+  SourceSet sources = settings.Signed
+    ? this->FindSigned(drawn, fields, ofSources)
+    : this->FindSources(drawn, fields, settings.MaximumDistance, ofSources);
   const bool haveStarts =
     !fields.StartTimes.empty() || (fields.Sources && !fields.Sources->StartTimes.empty());
   const bool areTimes = haveStarts || !fields.Speeds.Values.empty() || settings.HasSpeed();
   const DistanceMethod method = this->FindMethod(settings.Method, areTimes, 1.0);
-  const GeodesicDistance::Arrival arrival = this->Solve(sources, method, progress.Part(0.3, 0.95));
+  GeodesicDistance::Arrival arrival = this->Solve(sources, method, progress.Part(0.3, 0.95));
+  for (std::size_t i = 0; i < sources.Inside.size(); ++i)
+  {
+    const bool isInside = sources.Inside[i] && arrival.Times[i] < Never && arrival.Times[i] > 0.0;
+    arrival.Times[i] = isInside ? -arrival.Times[i] : arrival.Times[i];
+  }
 
   const Index n = mesh.NumberOfVertices();
   Values times(n, 1);
@@ -298,6 +315,7 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
   sources.Pieces = {};
   sources.Starts = {};
   sources.Names = {};
+  sources.Inside = {};
   this->Found = std::move(sources);
   this->Complete(drawn, settings);
 }
@@ -316,6 +334,7 @@ void DistanceRun::RequireSource(const std::vector<const DistanceRun*>& runs)
     all.TooFar += run->Found.TooFar;
     all.Outside += run->Found.Outside;
     all.AreShapes = run->Found.AreShapes;
+    all.IsSigned = run->Found.IsSigned;
   }
   // A surface whose triangles have no area is no error.
   if (all.Count > 0 || (vertices == 0 && degenerate > 0))
@@ -323,6 +342,13 @@ void DistanceRun::RequireSource(const std::vector<const DistanceRun*>& runs)
     return;
   }
   const Sentence mask(Word::Array("MaskArray"));
+  if (all.IsSigned && all.Given > all.Outside)
+  {
+    throw InputError(Sentence("the region of ")
+      << Word::Array("SourceArray")
+      << " has no boundary on the surface: it is all of it; allowed together with "
+      << Word::Setting("Signed") << ": a region with points of the surface around it");
+  }
   if (all.AreShapes && all.TooFar == 0)
   {
     throw InputError(Sentence("no source is on the surface: ")

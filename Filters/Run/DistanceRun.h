@@ -4,12 +4,14 @@
 
 #include "Core/Geodesics/EikonalDistance.h"
 #include "Core/Geodesics/ExactDistance.h"
+#include "Core/Geodesics/GeodesicPath.h"
 #include "Run/DistanceSources.h"
 #include "Run/SurfaceRun.h"
 #include "Run/WarningLog.h"
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -31,6 +33,7 @@ struct DistanceSettings : Settings
   double AlongSpeed = 1.0;
   double AcrossSpeed = 1.0;
   bool ComputeGradient = false;
+  bool Signed = false;
   bool MergeCoincidentPoints = false;
   double MergeTolerance = 0.0;
 
@@ -40,6 +43,31 @@ struct DistanceSettings : Settings
   bool IsDirected() const { return this->AlongSpeed != this->AcrossSpeed; }
   /// Whether fronts have another speed than 1, apart from that of an array.
   bool HasSpeed() const { return this->AlongSpeed != 1.0 || this->AcrossSpeed != 1.0; }
+};
+
+/// A place that the user gives: a point of the surface, or barycentric coordinates in a triangle of
+/// the input, or the place of the surface that is nearest to a point in space.
+struct SurfacePlace
+{
+  std::string Name; ///< for messages
+  Index Point = -1; ///< -1: it is no point of the surface
+  Index Triangle = -1; ///< -1: Coordinates are those of a point in space
+  Eigen::RowVector3d Coordinates = { 0.0, 0.0, 0.0 };
+};
+
+/// A path on a surface, straight in each triangle.
+struct SurfacePath
+{
+  SurfaceDiffusion::Points Points; ///< k x 3, coordinates
+  std::vector<Index> Triangles; ///< of the input, per segment
+  double Length = 0.0; ///< coordinate units
+};
+
+/// The part of a surface within a distance of a place.
+struct SurfaceDisk
+{
+  double Area = 0.0; ///< in squares of the coordinate unit
+  std::vector<Points> Boundary; ///< curves; closed ones end with the point that they begin with
 };
 
 /// Distances or arrival times on one surface, kept as long as neither inputs nor settings change.
@@ -70,6 +98,17 @@ public:
   Matrix FindEach(const BlockInput& input, Settings& given, const std::vector<Index>& points,
     double cutoff, const ProgressMonitor& progress);
 
+  /// The shortest path through places, one or more, one after the other, and back to the first if it is
+  /// closed: see GeodesicPath. Settings and inputs are those of Update(), but for speeds and
+  /// sources. Throws InputError if no triangle that takes part has a place, or no path leads there.
+  SurfacePath FindPath(const BlockInput& input, Settings& given,
+    const std::vector<SurfacePlace>& places, bool isClosed, const ProgressMonitor& progress);
+
+  /// The places that are no farther from one of them than radius, in coordinate units: see
+  /// GeodesicDisk. As FindPath().
+  SurfaceDisk FindDisk(const BlockInput& input, Settings& given, const SurfacePlace& center,
+    double radius, const ProgressMonitor& progress);
+
   /// Throws InputError, which says why, if none of the surfaces has a source. If all triangles that
   /// the mask leaves have no area, that is no error.
   static void RequireSource(const std::vector<const DistanceRun*>& runs);
@@ -84,6 +123,8 @@ private:
     Index Given = 0; ///< of all
     Index TooFar = 0, Outside = 0;
     bool AreShapes = false;
+    bool IsSigned = false;
+    std::vector<char> Inside; ///< of signed distances, per vertex: nonzero where they are below 0
     Sentence Farness; ///< of shapes: a warning, or empty
 
     bool HaveOneName() const;
@@ -100,6 +141,18 @@ private:
   SourceSet FindPlaced(const SourceShapes& shapes) const;
   SourceSet FindProjected(const BlockInput& input, const SourceShapes& shapes,
     double maximumDistance, const ProgressMonitor& progress);
+  SourceSet FindSigned(
+    const BlockInput& drawn, const Fields& fields, const ProgressMonitor& progress);
+  SourceSet FindClosedLines(
+    const BlockInput& drawn, const SourceShapes& shapes, const ProgressMonitor& progress);
+  void MoveToBoundary(SourceSet& set) const;
+  GeodesicPath::Path FindLeg(GeodesicPath& finder, const std::vector<SurfacePlace>& places,
+    const std::vector<MeshPlace>& stops, std::size_t from, std::size_t to,
+    const ProgressMonitor& progress) const;
+  std::vector<MeshPlace> PreparePlaces(const BlockInput& input, Settings& given,
+    const std::vector<SurfacePlace>& places, const ProgressMonitor& progress);
+  std::vector<MeshPlace> FindPlaces(const BlockInput& drawn,
+    const std::vector<SurfacePlace>& places, const ProgressMonitor& progress);
   Index CornerOf(Index point) const;
   static SourcePiece PieceAt(Index corner, Index number);
   /// That is taken. areTimes: there are speeds or start times. work: how often the whole surface is

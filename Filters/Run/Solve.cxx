@@ -27,7 +27,7 @@ const std::map<std::string, std::string> NamesOfArrays = { { "InputArray", "Data
 
 /// work(), whose errors are in the words of this interface.
 template <typename Work>
-Solution WordErrors(const Work& work)
+auto WordErrors(const Work& work)
 {
   try
   {
@@ -236,6 +236,25 @@ std::vector<std::string> SentencesOf(const std::vector<Warning>& warnings)
   return sentences;
 }
 
+/// find(run, input) of a DistanceRun, whose settings are checked together with the arrays.
+template <typename Find>
+void FindOnce(const Points& points, const Triangles& triangles, const SurfaceData& data,
+  DistanceSettings& settings, const ParallelFor& parallel, const Find& find)
+{
+  WordErrors(
+    [&]
+    {
+      const Input input(points, triangles, data);
+      FieldSummary summary = input.Summarize();
+      summary.Sources = true;
+      Problems problems;
+      settings.Check(&summary, problems);
+      ThrowProblems(problems);
+      DistanceRun run(parallel);
+      NamingSettings(settings, [&] { find(run, input.Block(run.ExcludesMasked())); });
+    });
+}
+
 /// A run without time steps, whose settings are checked together with the arrays.
 Solution SolveOnce(std::unique_ptr<SurfaceRun> run, const Points& points,
   const Triangles& triangles, const SurfaceData& data, Settings& settings,
@@ -378,6 +397,27 @@ Solution Distance(const Points& points, const Triangles& triangles, const Surfac
 {
   return SolveOnce(
     std::make_unique<DistanceRun>(parallel), points, triangles, data, settings, parallel);
+}
+
+SurfacePath ShortestPath(const Points& points, const Triangles& triangles,
+  const std::vector<SurfacePlace>& places, bool isClosed, const SurfaceData& data,
+  DistanceSettings settings, const ParallelFor& parallel)
+{
+  SurfacePath path;
+  FindOnce(points, triangles, data, settings, parallel,
+    [&](DistanceRun& run, const BlockInput& input)
+    { path = run.FindPath(input, settings, places, isClosed, ProgressMonitor()); });
+  return path;
+}
+
+SurfaceDisk DiskAround(const Points& points, const Triangles& triangles, const SurfacePlace& center,
+  double radius, const SurfaceData& data, DistanceSettings settings, const ParallelFor& parallel)
+{
+  SurfaceDisk disk;
+  FindOnce(points, triangles, data, settings, parallel,
+    [&](DistanceRun& run, const BlockInput& input)
+    { disk = run.FindDisk(input, settings, center, radius, ProgressMonitor()); });
+  return disk;
 }
 
 SmoothnessEstimate EstimateFWHM(

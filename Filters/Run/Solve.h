@@ -250,6 +250,17 @@ Solution Derivative(const Points& points, const Triangles& triangles, const Surf
 Solution Distance(const Points& points, const Triangles& triangles, const SurfaceData& data,
   DistanceSettings settings = {}, const ParallelFor& parallel = SerialFor());
 
+/// The shortest path through places, and back to the first if it is closed: see
+/// DistanceRun::FindPath(). Of data the mask, and of the settings the merging of points counts.
+SurfacePath ShortestPath(const Points& points, const Triangles& triangles,
+  const std::vector<SurfacePlace>& places, bool isClosed = false, const SurfaceData& data = {},
+  DistanceSettings settings = {}, const ParallelFor& parallel = SerialFor());
+
+/// The part of the surface within a distance of a place: see DistanceRun::FindDisk(). As ShortestPath().
+SurfaceDisk DiskAround(const Points& points, const Triangles& triangles, const SurfacePlace& center,
+  double radius, const SurfaceData& data = {}, DistanceSettings settings = {},
+  const ParallelFor& parallel = SerialFor());
+
 /// The smoothness of noise maps, as full widths at half maximum in the unit of the coordinates.
 struct SmoothnessEstimate
 {

@@ -220,6 +220,10 @@ NB_MODULE(_core, m)
     .def("write", &PythonRuns::Write, "surface"_a, "number"_a, "output"_a, "source"_a)
     .def("find_each", &PythonRuns::FindEach, "surface"_a, "settings"_a, "points"_a.none(),
       "cutoff"_a, "progress"_a.none())
+    .def("find_path", &PythonRuns::FindPath, "surface"_a, "settings"_a, "names"_a, "points"_a,
+      "triangles"_a, "coordinates"_a, "closed"_a, "progress"_a.none())
+    .def("find_disk", &PythonRuns::FindDisk, "surface"_a, "settings"_a, "names"_a, "points"_a,
+      "triangles"_a, "coordinates"_a, "radius"_a, "progress"_a.none())
     .def("turned_triangles", &PythonRuns::TurnedTriangles, "surface"_a);
   BindShapeFunctions(m);
   BindPieceFunctions(m);

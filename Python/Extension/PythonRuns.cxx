@@ -33,6 +33,25 @@ std::unique_ptr<SurfaceRun> MakeRun(const std::string& name)
   return model->MakeRun(PythonThreads::Instance());
 }
 
+std::vector<SurfacePlace> ReadPlaces(const std::vector<std::string>& names, const LongArray& points,
+  const LongArray& triangles, const DoubleArray& coordinates)
+{
+  std::vector<SurfacePlace> places;
+  for (std::size_t k = 0; k < names.size(); ++k)
+  {
+    const double* const x = coordinates.data() + 3 * k;
+    places.push_back({ names[k], static_cast<Index>(points.data()[k]),
+      static_cast<Index>(triangles.data()[k]), { x[0], x[1], x[2] } });
+  }
+  return places;
+}
+
+nb::object NewPoints(const Points& points)
+{
+  return NewArray(std::vector<double>(points.data(), points.data() + points.size()),
+    { static_cast<std::size_t>(points.rows()), 3 });
+}
+
 } // namespace
 
 PythonRuns::PythonRuns(std::string name)
@@ -103,35 +122,80 @@ void PythonRuns::Update(
   this->IsComplete = true;
 }
 
-nb::tuple PythonRuns::FindEach(const PythonFields& surface, const nb::dict& values,
-  const std::optional<LongArray>& points, double cutoff, const nb::object& progress)
+template <typename Find>
+void PythonRuns::WithDistances(
+  const PythonFields& surface, const nb::dict& values, const nb::object& progress, const Find& find)
 {
   const UseGuard guard(this->InUse);
   FieldSummary summary = surface.Summarize();
   summary.Sources = true;
   const std::unique_ptr<Settings> settings = this->TakeSettings(values, { summary });
+  this->IsComplete = false;
+  this->Runs.resize(1);
+  this->Runs[0] = this->Runs[0] ? std::move(this->Runs[0]) : MakeRun(this->Name);
+  auto& run = dynamic_cast<DistanceRun&>(*this->Runs[0]);
+  PythonProgress(progress).Run(
+    [&](const ProgressMonitor& monitor)
+    {
+      const BlockInput input = surface.Describe(run.ExcludesMasked());
+      NamingSettings(*settings, [&] { find(run, input, *settings, monitor); });
+      DistanceRun::RequireSource({ &run });
+    });
+  this->BlockNames = { surface.Block };
+  this->IsComplete = true;
+}
+
+nb::tuple PythonRuns::FindEach(const PythonFields& surface, const nb::dict& values,
+  const std::optional<LongArray>& points, double cutoff, const nb::object& progress)
+{
   std::vector<Index> rows;
   if (points)
   {
     rows.assign(points->data(), points->data() + points->size());
   }
-  this->IsComplete = false;
-  this->Runs.resize(1);
-  this->Runs[0] = this->Runs[0] ? std::move(this->Runs[0]) : MakeRun(this->Name);
-  auto& run = dynamic_cast<DistanceRun&>(*this->Runs[0]);
   DistanceRun::Matrix matrix;
-  PythonProgress(progress).Run(
-    [&](const ProgressMonitor& monitor)
-    {
-      const BlockInput input = surface.Describe(run.ExcludesMasked());
-      NamingSettings(
-        *settings, [&] { matrix = run.FindEach(input, *settings, rows, cutoff, monitor); });
-      DistanceRun::RequireSource({ &run });
-    });
-  this->BlockNames = { surface.Block };
-  this->IsComplete = true;
+  this->WithDistances(surface, values, progress,
+    [&](
+      DistanceRun& run, const BlockInput& input, Settings& settings, const ProgressMonitor& monitor)
+    { matrix = run.FindEach(input, settings, rows, cutoff, monitor); });
   return nb::make_tuple(NewArray(std::move(matrix.Data)), NewArray(std::move(matrix.Columns)),
     NewArray(std::move(matrix.Begin)));
+}
+
+nb::tuple PythonRuns::FindPath(const PythonFields& surface, const nb::dict& values,
+  const std::vector<std::string>& names, const LongArray& points, const LongArray& triangles,
+  const DoubleArray& coordinates, bool closed, const nb::object& progress)
+{
+  const std::vector<SurfacePlace> places = ReadPlaces(names, points, triangles, coordinates);
+  SurfacePath path;
+  this->WithDistances(surface, values, progress,
+    [&](
+      DistanceRun& run, const BlockInput& input, Settings& settings, const ProgressMonitor& monitor)
+    { path = run.FindPath(input, settings, places, closed, monitor); });
+  std::vector<std::int64_t> faces;
+  for (const Index t : path.Triangles)
+  {
+    faces.push_back(surface.Surface->FaceOf(t));
+  }
+  return nb::make_tuple(NewPoints(path.Points), NewArray(std::move(faces)), path.Length);
+}
+
+nb::tuple PythonRuns::FindDisk(const PythonFields& surface, const nb::dict& values,
+  const std::vector<std::string>& names, const LongArray& points, const LongArray& triangles,
+  const DoubleArray& coordinates, double radius, const nb::object& progress)
+{
+  const std::vector<SurfacePlace> places = ReadPlaces(names, points, triangles, coordinates);
+  SurfaceDisk disk;
+  this->WithDistances(surface, values, progress,
+    [&](
+      DistanceRun& run, const BlockInput& input, Settings& settings, const ProgressMonitor& monitor)
+    { disk = run.FindDisk(input, settings, places.at(0), radius, monitor); });
+  nb::list boundary;
+  for (const Points& curve : disk.Boundary)
+  {
+    boundary.append(NewPoints(curve));
+  }
+  return nb::make_tuple(disk.Area, boundary);
 }
 
 const SurfaceRun& PythonRuns::RunOf(std::size_t surface) const

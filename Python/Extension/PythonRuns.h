@@ -47,6 +47,16 @@ public:
   /// DistanceRun::FindEach().
   nanobind::tuple FindEach(const PythonFields& surface, const nanobind::dict& settings,
     const std::optional<LongArray>& points, double cutoff, const nanobind::object& progress);
+  /// Of distance, see DistanceRun::FindPath(): points, the face of each segment, and the length. places:
+  /// their names, and per row of `coordinates` a point and a triangle, or -1 for none.
+  nanobind::tuple FindPath(const PythonFields& surface, const nanobind::dict& settings,
+    const std::vector<std::string>& names, const LongArray& points, const LongArray& triangles,
+    const DoubleArray& coordinates, bool closed, const nanobind::object& progress);
+  /// Of distance, see DistanceRun::FindDisk(): the area, and the curves of the boundary. center: as
+  /// places, one of them.
+  nanobind::tuple FindDisk(const PythonFields& surface, const nanobind::dict& settings,
+    const std::vector<std::string>& names, const LongArray& points, const LongArray& triangles,
+    const DoubleArray& coordinates, double radius, const nanobind::object& progress);
   /// Of relief: the rows of the triangles of a surface that the relief has turned.
   nanobind::object TurnedTriangles(std::size_t surface) const;
 
@@ -54,6 +64,10 @@ private:
   /// The settings, checked together with the inputs. Throws InputError and nanobind::value_error.
   std::unique_ptr<Settings> TakeSettings(
     const nanobind::dict& values, const std::vector<FieldSummary>& summaries) const;
+  /// find(run, input, settings, monitor) of a DistanceRun on one surface.
+  template <typename Find>
+  void WithDistances(const PythonFields& surface, const nanobind::dict& values,
+    const nanobind::object& progress, const Find& find);
   std::vector<const SurfaceRun*> ListRuns() const;
   std::vector<Warning> FindWarnings() const;
   /// Throws std::runtime_error unless the last update has succeeded.

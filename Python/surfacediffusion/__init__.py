@@ -33,6 +33,9 @@
 `distance`            distances along the surface, arrival times of fronts
 `nearest_sources`     the same with the source that is nearest
 `distances`           distances between points up to a cutoff, for scipy
+`geodesic_path`       the shortest path between two places
+`path_through`        shortest paths through several places, as cuts and rims
+`geodesic_disk`       the area and the boundary of what is within a distance
 `mass_matrix`         areas of the points' control cells, for scipy
 `stiffness_matrix`    cotangent Laplacian, or that of tensors, for scipy
 `gradient_matrix`     gradients on the triangles, for scipy
@@ -64,7 +67,8 @@ import typing as _typing
 import warnings as _warnings
 from importlib.metadata import version as _version
 
-from . import _core, _derivatives, _distance, _fields, _functions, _operators, _resampling, _result, _scales, _steps
+from . import (
+    _core, _derivatives, _distance, _fields, _functions, _operators, _paths, _resampling, _result, _scales, _steps)
 from ._derivatives import *  # noqa: F403
 from ._distance import *  # noqa: F403
 from ._fields import *  # noqa: F403
@@ -72,6 +76,7 @@ from ._functions import *  # noqa: F403
 from ._fwhm import FWHMEstimate, estimate_fwhm, smooth_to_fwhm
 from ._images import estimate_fwhm_img, smooth_img
 from ._operators import *  # noqa: F403
+from ._paths import *  # noqa: F403
 from ._refinement import RefinedSurface, refine
 from ._resampling import *  # noqa: F403
 from ._result import *  # noqa: F403
@@ -94,6 +99,7 @@ __all__ += _distance.__all__
 __all__ += _fields.__all__
 __all__ += _functions.__all__
 __all__ += _operators.__all__
+__all__ += _paths.__all__
 __all__ += _resampling.__all__
 __all__ += _result.__all__
 __all__ += _scales.__all__

@@ -15,7 +15,7 @@ from ._models import ARRAYS
 from ._operators import import_sparse
 from ._refinement import MAXIMUM_TRIANGLES, interpolate_points, take_along
 from ._run import Input, Progress, ProgressReporter, Runner, warn
-from ._settings import as_number, settings_of, shorten
+from ._settings import as_number, as_switch, settings_of, shorten
 from ._surface import Surface, SurfaceLike, as_factors, as_numbers, as_surface, find_place, left_out, require_shape
 
 __all__ = ["NearestSources", "distance", "distances", "nearest_sources"]
@@ -48,6 +48,7 @@ def distance(
     roi: ArrayLike | None = None,
     method: str = "Automatic",
     maximum_distance: float = 0.0,
+    signed: bool = False,
     merge_coincident_points: bool = False,
     merge_tolerance: float = 0.0,
     progress: Progress = None,
@@ -97,6 +98,13 @@ def distance(
         `start` nor speeds.
     maximum_distance : float, 0 or more, default 0
         Coordinates in `sources` that are farther from the surface do not count. 0: any distance.
+    signed : bool, default False
+        Whether the distance is below 0 on one side. Of a region, `sources` of type bool or rows of its
+        points: that from its boundary, a smooth line between its points and those around it, below 0
+        within.
+        Of a closed curve, coordinates (k, 3): that from the shortest paths between one place and the
+        next and back to the first, as of :func:`path_through`, below 0 on the side of the smaller area.
+        Without speeds and start times.
     merge_coincident_points : bool, default False
         Whether points within `merge_tolerance`, default 0, of each other are one point of the surface.
     progress : bool or callable, optional
@@ -116,7 +124,8 @@ def distance(
     Raises
     ------
     ValueError
-        Without any source that counts; with the methods Heat and Exact and `start` or speeds.
+        Without any source that counts; with the methods Heat and Exact and `start` or speeds; with
+        `signed` and a curve that does not divide the surface into two sides.
 
     References
     ----------
@@ -149,6 +158,7 @@ def nearest_sources(
     roi: ArrayLike | None = None,
     method: str = "Automatic",
     maximum_distance: float = 0.0,
+    signed: bool = False,
     merge_coincident_points: bool = False,
     merge_tolerance: float = 0.0,
     progress: Progress = None,
@@ -160,7 +170,7 @@ def nearest_sources(
     Parameters
     ----------
     surface, sources, start, speed, directions, along_speed, across_speed, mask, roi, method, \
-maximum_distance, merge_coincident_points, merge_tolerance, progress, refine_to, maximum_number_of_triangles
+maximum_distance, signed, merge_coincident_points, merge_tolerance, progress, refine_to, maximum_number_of_triangles
         As for :func:`distance`. With the method Heat, the sources are those of Automatic.
 
     Returns
@@ -195,11 +205,18 @@ maximum_distance, merge_coincident_points, merge_tolerance, progress, refine_to,
         rows = np.append(rows, given.n_points + added)
     elif fine is not None and rows is not None:  # other triangles, the same planes
         rows, places = None, np.einsum("ki,kij->kj", places, given.points[given.triangles[rows]])
+    segments = None
+    if as_switch("signed", signed) and places is not None:
+        if rows is not None or len(places) < 3:
+            raise ValueError(f"sources is {shorten(sources)}; allowed with signed=True: flags or rows of the "
+                             "points of a region, or coordinates of three or more places along a closed curve")
+        one = np.arange(len(places))
+        segments = np.column_stack([one, np.roll(one, -1)]).reshape(-1)
     inputs = _make_input(surface, **carried)
-    inputs.core.set_sources(places, None, None, rows, times)
+    inputs.core.set_sources(places, segments, None, rows, times)
     outputs, _ = run_once("distance", inputs, {
         "method": method, "along_speed": along_speed, "across_speed": across_speed,
-        "maximum_distance": maximum_distance, "merge_coincident_points": merge_coincident_points,
+        "maximum_distance": maximum_distance, "signed": signed, "merge_coincident_points": merge_coincident_points,
         "merge_tolerance": merge_tolerance}, _ARRAYS, progress)
     found = {output.name: output.values for output in outputs}
     source = found["NearestSource"].astype(np.int64)
@@ -346,21 +363,21 @@ def _as_rows(name: str, values: Any, count: int, what: str, also: str = "") -> N
 
 
 def _as_places_in_triangles(
-    surface: Surface, faces: Any, barycentric: Any
+    surface: Surface, faces: Any, barycentric: Any, name: str = "sources"
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Rows of surface.triangles, and barycentric coordinates."""
-    rows = _as_rows("sources[0]", faces, surface.n_faces, "faces")
-    weights = np.ascontiguousarray(as_numbers("sources[1]", barycentric), dtype=np.float64)
-    require_shape("sources[1]", weights, weights.shape == (len(rows), 3), f"({len(rows)}, 3), one row per face")
+    rows = _as_rows(f"{name}[0]", faces, surface.n_faces, "faces")
+    weights = np.ascontiguousarray(as_numbers(f"{name}[1]", barycentric), dtype=np.float64)
+    require_shape(f"{name}[1]", weights, weights.shape == (len(rows), 3), f"({len(rows)}, 3), one row per face")
     bad = ~((weights >= 0.0).all(axis=1) & (np.abs(weights.sum(axis=1) - 1.0) <= 1e-6))
     if bad.any():
         row = int(np.argmax(bad))
-        raise ValueError(f"sources[1] is {weights[row].tolist()} in row {row}; allowed: three numbers, 0 "
+        raise ValueError(f"{name}[1] is {weights[row].tolist()} in row {row}; allowed: three numbers, 0 "
                          "or more, whose sum is 1")
     sizes = np.diff(surface._offsets)
     polygons = sizes[rows] != 3
     if polygons.any():
-        raise ValueError(f"sources[0] has face {rows[polygons][0]} with {sizes[rows[polygons][0]]} points; "
+        raise ValueError(f"{name}[0] has face {rows[polygons][0]} with {sizes[rows[polygons][0]]} points; "
                          "allowed: triangles, or coordinates in place of faces")
     first = np.concatenate([[0], np.cumsum(sizes - 2)])
     return np.ascontiguousarray(first[rows], dtype=np.int64), weights

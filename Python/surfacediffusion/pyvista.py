@@ -64,6 +64,9 @@ from ._distance import nearest_sources as _nearest_sources
 from ._fields import random_field as _random_field
 from ._fields import surrogates as _surrogates
 from ._models import ARRAYS, Output, as_mask, find_outputs, make_result, take_data
+from ._paths import geodesic_disk as _geodesic_disk
+from ._paths import geodesic_path as _geodesic_path
+from ._paths import path_through as _path_through
 from ._polydata import (
     ABSENT, attribute_of, cell_flags, move_points, name_of, read_cells, refined_polydata, turn_polygons,
 )
@@ -80,7 +83,8 @@ from ._shape import relief as _relief
 from ._surface import Surface, place
 
 __all__: list[str] = []
-__all__ += [*_functions.__all__, "distance", "random_field", "relief", "scale_filter", "surrogates"]
+__all__ += [*_functions.__all__, "distance", "geodesic_disk", "geodesic_path", "path_through", "random_field",
+            "relief", "scale_filter", "surrogates"]
 
 
 def _of_data(name: str, results: str) -> Callable[..., Any]:
@@ -272,7 +276,7 @@ def distance(
 
     sources: the name of a point array, whose nonzero points are the sources; or numbers of points; or a
     data set or an array (k, 3), whose points stand for the nearest places of the mesh, in each block of a
-    MultiBlock. speed: point or cell array. direction: point or cell array with three components, for
+    MultiBlock. With signed=True they are a region, or places along a closed curve. speed: point or cell array. direction: point or cell array with three components, for
     along_speed and across_speed. mask, roi: point or cell array; points and cells with a nonzero value,
     or with 0, are left out. All other keywords are those of surfacediffusion.distance. The results are the
     point arrays Distance, with speeds ArrivalTime, which becomes active, and NearestSource: the value of the
@@ -313,6 +317,51 @@ def distance(
         block.mesh.field_data[prefix + "EffectiveMethod"] = [found.method]
         block.mesh.set_active_scalars(name, "point")
     return _rebuild(mesh, iter(blocks))
+
+
+def geodesic_path(
+    mesh: Any, start: Any, end: Any, *, mask: str | None = None, roi: str | None = None,
+    progress: Progress = False, **merging: Any,
+) -> pyvista.PolyData:
+    """Find the shortest path between two places of the mesh, of one surface.
+
+    start, end: the number of a point, or a tuple (face, three barycentric coordinates), or three coordinates.
+    mask, roi: point or cell array; points and cells with a nonzero value, or with 0, are left out. All other
+    keywords are those of surfacediffusion.geodesic_path. The result is a polyline with the field arrays
+    Length and Cells, the cell of the mesh that each of its segments lies in.
+    """
+    block, path = _on_one(_geodesic_path, mesh, (start, end), mask, roi, progress, merging)
+    return _draw_path(block, path)
+
+
+def path_through(
+    mesh: Any, points: Any, closed: bool = False, *, mask: str | None = None, roi: str | None = None,
+    progress: Progress = False, **merging: Any,
+) -> pyvista.PolyData:
+    """Find the shortest paths from each of several places of the mesh to the next, as one.
+
+    points: numbers of points, or coordinates (k, 3), or a data set whose points these are, or a sequence of
+    places. closed: whether the path leads back to the first place. All other keywords and the result are
+    those of geodesic_path().
+    """
+    given = getattr(points, "points", points)
+    block, path = _on_one(_path_through, mesh, (given, closed), mask, roi, progress, merging)
+    return _draw_path(block, path)
+
+
+def geodesic_disk(
+    mesh: Any, center: Any, radius: float, *, mask: str | None = None, roi: str | None = None,
+    progress: Progress = False, **merging: Any,
+) -> pyvista.PolyData:
+    """Find the part of the mesh, of one surface, within a distance of a place.
+
+    center: a place as for geodesic_path(). All other keywords are those of surfacediffusion.geodesic_disk. The
+    result has a polyline along each curve of the boundary, and the field array Area.
+    """
+    _, disk = _on_one(_geodesic_disk, mesh, (center, radius), mask, roi, progress, merging)
+    curves = _draw_curves(disk.boundary)
+    curves.field_data["Area"] = [disk.area]
+    return curves
 
 
 def random_field(
@@ -604,6 +653,35 @@ def _find_surfaces(mesh: Any, function: str, keywords: dict[str, Any]) -> list[_
         blocks = [block.with_edges(fine) if len(fine.parents) else block
                   for block, fine in zip(blocks, refined)]
     return blocks
+
+
+def _on_one(
+    function: Callable[..., Any], mesh: Any, places: Sequence[Any], mask: str | None, roi: str | None,
+    progress: Progress, merging: dict[str, Any],
+) -> tuple[_Block, Any]:
+    """The only surface of a mesh, and what a function finds on it."""
+    blocks = [block for block in map(_Block, _find_polydata(mesh)) if not block.empty]
+    if len(blocks) != 1:
+        raise ValueError(f"the mesh has {len(blocks)} blocks with polygons or strips; allowed: one")
+    given = blocks[0].find_all(mask=mask, roi=roi)
+    return blocks[0], function(blocks[0].surface, *places, progress=progress, **given, **merging)
+
+
+def _draw_curves(curves: Sequence[NDArray[Any]]) -> pyvista.PolyData:
+    """A polyline for each of them; a vertex for a single point."""
+    if sum(map(len, curves)) < 2:
+        return pyvista.PolyData(np.reshape(curves, (-1, 3))) if curves else pyvista.PolyData()
+    first = np.cumsum([0, *map(len, curves)])
+    lines = [np.concatenate([[len(curve)], begin + np.arange(len(curve))])
+             for begin, curve in zip(first, curves)]
+    return pyvista.PolyData(np.concatenate(curves), lines=np.concatenate(lines))
+
+
+def _draw_path(block: _Block, path: Any) -> pyvista.PolyData:
+    drawn = _draw_curves([path.points])
+    drawn.field_data["Length"] = [path.length]
+    drawn.field_data["Cells"] = np.asarray(block.face_cells)[path.faces]
+    return drawn
 
 
 def _rebuild(mesh: Any, blocks: Iterator[_Block]) -> Any:

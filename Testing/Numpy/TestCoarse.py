@@ -32,6 +32,7 @@ if not importlib.util.find_spec("scipy"):
 RANDOM = {"random_field", "surrogates", "segment", "turing_texture", "turing_texture_steps"}
 #: Of functions that iterate until a tolerance, relative to the largest value.
 TOLERANCES = dict.fromkeys(("intrinsic_tv", "intrinsic_tv_steps", "mumford_shah", "mumford_shah_steps"), 1e-3)
+TOLERANCES["geodesic_disk"] = 3e-4  # of edges of the same length, round-off says which is bisected first
 SURFACES = list(read_surfaces())
 
 
@@ -61,7 +62,9 @@ def arguments(function, name, values, vectors, length, target=None):
     """No more than a function must have."""
     given = {"values": values, "times": values, "vectors": vectors, "sources": 0, "n": 3,
              "residuals": np.outer(values, [1, 2, -3]) ** 2, "height": 0.03 * length, "length": length,
-             "target": target, "wavelength": length, "wavelengths": [length, 3 * length], "fwhm": length}
+              "target": target, "wavelength": length, "wavelengths": [length, 3 * length], "fwhm": length,
+              "start": 0, "end": len(values) - 1, "points": [0, len(values) // 2, len(values) - 1],
+              "center": 0, "radius": length}
     more = {"heat": ["fwhm"], "heat_steps": ["fwhm"], "random_field": ["fwhm"], "segment": ["values"]}
     parameters = [*inspect.signature(function).parameters.values()][1:]
     found = {parameter.name: given[parameter.name] for parameter in parameters
@@ -75,7 +78,7 @@ def without_frame(result):
     """What does not change with a rotation."""
     if isinstance(result, sd.States):
         result = [*result][-1]
-    for name in ("longest_edge", "heights", "speed", "variance", "pooled", "mean", "values"):
+    for name in ("longest_edge", "heights", "length", "area", "speed", "variance", "pooled", "mean", "values"):
         if not hasattr(result, "toarray") and not isinstance(result, np.ndarray):
             result = getattr(result, name, result)
     if isinstance(result, tuple):

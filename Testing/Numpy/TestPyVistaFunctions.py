@@ -16,9 +16,9 @@ import numpy as np
 
 import surfacediffusion as sd
 from surfacediffusion.pyvista import (
-    curvature, denoise_mesh, derivatives, direction_field, distance, harmonic_map, heat, interpolate,
-    intrinsic_tv, mumford_shah, random_field, relief, scale_filter, segment, surrogates, tensor_diffusion,
-    turing_texture,
+    curvature, denoise_mesh, derivatives, direction_field, distance, geodesic_disk, geodesic_path,
+    harmonic_map, heat, interpolate, intrinsic_tv, mumford_shah, path_through, random_field, relief,
+    scale_filter, segment, surrogates, tensor_diffusion, turing_texture,
 )
 
 
@@ -284,6 +284,28 @@ class Meshes(unittest.TestCase):
             fine = distance(ball, sources, refine_to=0.05)
             expected = sd.nearest_sources(surface, sources, refine_to=0.05)
             np.testing.assert_array_equal(fine["Distance"], expected.distance)
+
+    def test_paths_and_disks_are_polylines(self):
+        ball = pyvista.Icosphere(nsub=4)
+        surface = as_surface(ball)
+        drawn, path = geodesic_path(ball, 5, [0, 0, 2]), sd.geodesic_path(surface, 5, [0, 0, 2])
+        self.assertEqual((drawn.n_lines, drawn.n_points), (1, len(path.points)))
+        np.testing.assert_array_equal(drawn.field_data["Length"], [path.length])
+        np.testing.assert_array_equal(drawn.field_data["Cells"], path.faces)
+        np.testing.assert_allclose(drawn.compute_cell_sizes()["Length"], path.length, rtol=1e-6)
+        around = path_through(ball, pyvista.PolyData(ball.points[[3, 50, 700]]), closed=True)
+        want = sd.path_through(surface, ball.points[[3, 50, 700]], True).length
+        np.testing.assert_allclose(around.field_data["Length"], want, rtol=1e-9)
+        disk = geodesic_disk(ball, 9, 0.4)
+        self.assertEqual(disk.n_lines, 1)
+        np.testing.assert_array_equal(disk.field_data["Area"], [sd.geodesic_disk(surface, 9, 0.4).area])
+        self.assertEqual(geodesic_disk(ball, 9, 9.0).n_points, 0)
+        self.assertEqual(geodesic_path(ball, 5, 5).n_points, 1)
+        ball["cap"] = (ball.points[:, 2] > 0.5).astype(float)
+        np.testing.assert_array_equal(
+            distance(ball, "cap", signed=True)["Distance"] < 0, ball["cap"] > 0)
+        with self.assertRaisesRegex(ValueError, "the mesh has 2 blocks .*allowed: one"):
+            geodesic_path(pyvista.MultiBlock([ball, ball.copy()]), 0, 1)
 
     def test_fields_and_scales_are_those_of_the_arrays(self):
         ball = noisy_sphere()

@@ -128,7 +128,7 @@ DEFAULTS = {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
     "vtkSurfaceDistanceFilter": {
         **SURFACE, "Method": "Automatic", "MaximumDistance": 0.0, "AlongSpeed": 1.0, "AcrossSpeed": 1.0,
-        "ComputeGradient": False},
+        "ComputeGradient": False, "Signed": False},
     "vtkSurfaceDirectionFieldFilter": {
         **SURFACE, "ResultArrayName": "Direction", "Method": "PrincipalCurvature",
         "PrincipalDirection": "Minimum", "SmoothingLength": -1.0, "HintWeight": 0.1, "Angle": 0.0},

@@ -520,6 +520,7 @@ inline List OfDistance()
     RANDOM_PROPERTY(F, AlongSpeed, dice.Flip(6) ? Positive(dice) : 1.0),
     RANDOM_PROPERTY(F, AcrossSpeed, dice.Flip(6) ? Positive(dice) : 1.0),
     RANDOM_PROPERTY(F, ComputeGradient, dice.Flip()),
+    RANDOM_PROPERTY(F, Signed, dice.Flip(4)),
   };
 }
 

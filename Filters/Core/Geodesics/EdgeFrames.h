@@ -4,6 +4,9 @@
 
 #include "Core/Surface/TriangleMesh.h"
 
+#include <Eigen/Core>
+
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -80,6 +83,24 @@ public:
         }
       }
     }
+  }
+
+  /// A point of a triangle, in barycentric coordinates, in the frame of one of its edges.
+  Eigen::Vector2d PlaceOn(Index edge, const std::array<double, 3>& at) const
+  {
+    const Frame& frame = (*this)[edge];
+    const double apex = at[static_cast<std::size_t>(edge % 3)];
+    const double end = at[static_cast<std::size_t>((edge + 2) % 3)];
+    return { end * frame.Length + apex * frame.X, std::max(0.0, apex) * frame.Y };
+  }
+  /// The barycentric coordinates of the place x of an edge, 0 to its length.
+  std::array<double, 3> PlaceAlong(Index edge, double x) const
+  {
+    std::array<double, 3> at = { 0.0, 0.0, 0.0 };
+    at[static_cast<std::size_t>((edge + 2) % 3)] = x / (*this)[edge].Length;
+    at[static_cast<std::size_t>((edge + 1) % 3)] =
+      1.0 - at[static_cast<std::size_t>((edge + 2) % 3)];
+    return at;
   }
 
   double Angle(Index corner) const { return this->Angles[static_cast<std::size_t>(corner)]; }

@@ -56,6 +56,9 @@ public:
   std::vector<std::pair<Index, double>> FindNear(const SourcePiece& source, double cutoff,
     Memories& memories, const ProgressMonitor& progress = ProgressMonitor()) const;
 
+  /// The triangles of the mesh laid out.
+  const EdgeFrames& GetFrames() const { return this->Frames; }
+
   /// Whether Find() over the whole mesh, or as often as `times` says, takes at most about a second: the
   /// mesh has up to some 100,000 triangles, fewer if very many of them share a vertex and others come
   /// after these: not in a disk that is cut from its middle. Further sources make the work less.

@@ -33,6 +33,23 @@ struct GeodesicWindow
       ? this->Start - this->X * x
       : this->Start + std::sqrt((x - this->X) * (x - this->X) + this->Y * this->Y);
   }
+  /// The distance at a place (x, y) of the triangle by a way through the interval, y >= 0. Where no
+  /// straight one leads there, it turns at an end of the interval.
+  double Beyond(double x, double y) const
+  {
+    const double rise = y - this->Y;
+    double crossing = x;
+    if (this->IsStrip)
+    {
+      crossing = this->Y < 0.0 ? x - y * this->X / this->Y : x;
+    }
+    else if (rise > 0.0)
+    {
+      crossing = x - y * (x - this->X) / rise;
+    }
+    crossing = std::clamp(crossing, this->Begin, this->End);
+    return this->At(crossing) + std::sqrt((x - crossing) * (x - crossing) + y * y);
+  }
   /// The x-component of the way through the place x of the edge, whose y-component is -Y.
   double WayX(double x) const { return this->IsStrip ? -this->X : x - this->X; }
   /// The least distance in the interval.

@@ -11,6 +11,13 @@
 namespace SurfaceDiffusion
 {
 
+/// A place within a triangle.
+struct MeshPlace
+{
+  Index Triangle;
+  std::array<double, 3> At; ///< barycentric coordinates
+};
+
 /// A straight piece of a source within a triangle: a part of a line, or a point.
 struct SourcePiece
 {

@@ -117,7 +117,8 @@ void WindowFront::QueueChanged()
   this->Changed.clear();
 }
 
-void WindowFront::Run(const ProgressMonitor& progress)
+void WindowFront::Run(
+  const ProgressMonitor& progress, const Watch& watch, const std::function<double()>& bound)
 {
   progress.Report(0.0); // a small surface has no other report
   std::vector<Window> windows;
@@ -125,6 +126,11 @@ void WindowFront::Run(const ProgressMonitor& progress)
   for (this->QueueChanged(); !this->Queue.empty(); this->QueueChanged())
   {
     const auto [least, edge] = this->Queue.top();
+    if (bound && least > bound())
+    {
+      this->DropWaiting();
+      break;
+    }
     this->Queue.pop();
     if (edge < 0)
     {
@@ -148,7 +154,26 @@ void WindowFront::Run(const ProgressMonitor& progress)
     this->WaitingAt[static_cast<std::size_t>(edge)] = -1;
     this->Free.push_back(place);
     this->CrossTriangle(edge, windows);
+    if (watch && this->Watched[static_cast<std::size_t>(edge / 3)])
+    {
+      watch(edge, windows);
+    }
     windows.clear();
+  }
+}
+
+void WindowFront::DropWaiting()
+{
+  for (; !this->Queue.empty(); this->Queue.pop())
+  {
+    const Index edge = this->Queue.top().second;
+    if (edge >= 0 && this->WaitingAt[static_cast<std::size_t>(edge)] >= 0)
+    {
+      Index& place = this->WaitingAt[static_cast<std::size_t>(edge)];
+      this->Pool[static_cast<std::size_t>(place)].Windows.clear();
+      this->Free.push_back(place);
+      place = -1;
+    }
   }
 }
 
@@ -166,6 +191,7 @@ void WindowFront::Clear()
     this->TimesCrossed[static_cast<std::size_t>(edge)] = 0;
   }
   this->Reached.clear();
+  this->PointSources.clear();
   this->Crossed.clear();
   this->Past.clear();
 }
@@ -259,7 +285,8 @@ void WindowFront::CrossTriangle(Index edge, std::vector<Window>& windows)
       {
         const double angle =
           std::atan2(frame.X * wayToY - frame.Y * wayToX, frame.X * wayToX + frame.Y * wayToY);
-        this->Reach(this->VertexAt(edge), atApex, w.Source, { edge, std::max(0.0, angle) });
+        this->Reach(this->VertexAt(edge), atApex, w.Source,
+          { edge, std::max(0.0, angle), { -1, edge, true, { w.X, w.Y }, w.Start } });
       }
     }
     if (fromBegin < 0.0)

@@ -7,6 +7,8 @@
 #include "Core/Geodesics/GeodesicWindow.h"
 #include "Core/Geodesics/SourcePiece.h"
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -24,15 +26,38 @@ class WindowFront
 public:
   WindowFront(const TriangleMesh& mesh, const EdgeFrames& frames, double cutoff);
 
+  /// The straight last part of the way to a place: from a vertex, or from a source in the triangle of
+  /// the place, or over an edge of this triangle.
+  struct LastPart
+  {
+    Index From = -1; ///< the vertex that it comes from; -1: none
+    Index Corner = -1; ///< of the triangle; the edge opposite, if the way comes over it
+    bool IsOverEdge = false;
+    Eigen::Vector2d Place = { 0.0, 0.0 }; ///< in the frame of this edge, where the part begins
+    double Start = 0.0; ///< the distance there
+  };
+
   void AddSource(const SourcePiece& piece, Index source);
-  /// Throws Aborted.
-  void Run(const ProgressMonitor& progress);
+  /// watch: has windows that go over marked triangles. bound: the run ends with windows that are
+  /// farther than what it returns. Throws Aborted.
+  using Watch = std::function<void(Index edge, const std::vector<GeodesicWindow>&)>;
+  void Run(const ProgressMonitor& progress, const Watch& watch = {},
+    const std::function<double()>& bound = {});
   /// As after construction, once Run() has ended, in the time that Run() took.
   void Clear();
 
   std::vector<double> Times;
   std::vector<Index> Sources;
   std::vector<Index> Reached; ///< vertices
+  std::vector<char> Watched; ///< per triangle, nonzero: marked for Run(); empty: none
+  /// Of sources that are points: the triangles around those on an edge.
+  std::vector<MeshPlace> PointSources;
+
+  /// Of the way to a vertex that has been reached.
+  const LastPart& LastPartTo(Index vertex) const
+  {
+    return this->Ways[static_cast<std::size_t>(vertex)].Last;
+  }
 
 private:
   /// Windows that have come to an edge and not yet gone over its triangle.
@@ -48,6 +73,7 @@ private:
   {
     Index Corner = -1; ///< the triangle that it comes through; -1: ways go on everywhere
     double Angle = 0.0; ///< between the way and the edge to the next corner
+    LastPart Last;
   };
 
   void AddPoint(Index triangle, const std::array<double, 3>& at, Index source);
@@ -73,6 +99,8 @@ private:
     Index edge, bool left, const GeodesicWindow& window, bool seesApex, double atApex);
   /// Puts a window, in the direction of `edge` or reversed, behind it.
   void GoOver(Index edge, bool reversed, std::uint32_t behind, const GeodesicWindow& window);
+  /// Forgets what waits.
+  void DropWaiting();
   /// Puts edges that windows have come to into the queue.
   void QueueChanged();
   Index VertexAt(Index corner) const { return this->Mesh.TriangleVertices().data()[corner]; }

@@ -29,13 +29,6 @@ double Entry(const std::array<double, 3>& at, Index corner)
   return at[static_cast<std::size_t>(corner % 3)];
 }
 
-/// A point of a triangle in the frame of an edge: the corner opposite is 3 t + a as the edge is.
-Vector2d PlaceOn(const EdgeFrames::Frame& frame, const std::array<double, 3>& at, Index edge)
-{
-  const double apex = Entry(at, edge), end = Entry(at, edge + 2);
-  return { end * frame.Length + apex * frame.X, std::max(0.0, apex) * frame.Y };
-}
-
 } // namespace
 
 void WindowFront::AddSource(const SourcePiece& piece, Index source)
@@ -54,9 +47,11 @@ void WindowFront::ReachFrom(Index corner, const Vector2d& place, Index source)
   const EdgeFrames::Frame& frame = this->Frames[CornerAfter(corner, 2)];
   const double distance = std::hypot(place[0], place[1]);
   Incoming incoming;
+  incoming.Last.Corner = corner;
   if (distance >= NearVertex * std::min(frame.Length, frame.LeftLength))
   {
-    incoming = { corner, std::max(0.0, std::atan2(place[1], place[0])) };
+    incoming.Corner = corner;
+    incoming.Angle = std::max(0.0, std::atan2(place[1], place[0]));
   }
   this->Reach(this->VertexAt(corner), distance, source, incoming);
 }
@@ -68,7 +63,7 @@ void WindowFront::AddPoint(Index triangle, const std::array<double, 3>& at, Inde
   const auto placeFrom = [&](Index corner)
   {
     const Index edge = CornerAfter(corner, 2);
-    return PlaceOn(this->Frames[edge], at, edge);
+    return this->Frames.PlaceOn(edge, at);
   };
   const EdgeFrames::Frame& around = this->Frames[nearest];
   const Vector2d place = placeFrom(nearest);
@@ -105,14 +100,15 @@ bool WindowFront::IsOnEdge(Index edge, const std::array<double, 3>& at) const
 void WindowFront::LeavePoint(
   Index triangle, const std::array<double, 3>& at, Index source, Index behind)
 {
+  this->PointSources.push_back({ triangle, at });
   for (Index edge = 3 * triangle; edge < 3 * triangle + 3; ++edge)
   {
     const Index before = CornerAfter(edge, 2);
-    this->ReachFrom(edge, PlaceOn(this->Frames[before], at, before), source);
+    this->ReachFrom(edge, this->Frames.PlaceOn(before, at), source);
     if (behind >= 0 ? edge != behind : !this->IsOnEdge(edge, at))
     {
       const EdgeFrames::Frame& frame = this->Frames[edge];
-      const Vector2d place = PlaceOn(frame, at, edge);
+      const Vector2d place = this->Frames.PlaceOn(edge, at);
       Window w{ 0.0, frame.Length, place[0], -place[1], 0.0, 0.0, 0.0, source, false, false };
       w.AtBegin = w.At(w.Begin);
       w.AtEnd = w.At(w.End);
@@ -127,7 +123,8 @@ void WindowFront::AddStrips(const SourcePiece& piece, Index source)
   {
     // The corner at the begin of the edge
     const EdgeFrames::Frame& frame = this->Frames[edge];
-    const Vector2d from = PlaceOn(frame, piece.From, edge), to = PlaceOn(frame, piece.To, edge);
+    const Vector2d from = this->Frames.PlaceOn(edge, piece.From),
+                   to = this->Frames.PlaceOn(edge, piece.To);
     const Vector2d along = to - from;
     const double length = along.norm(), share = -from.dot(along) / (length * length);
     if (!(length > 0.0))
@@ -210,9 +207,10 @@ void WindowFront::LeaveVertex(Index vertex)
     const EdgeFrames::Frame& frame = this->Frames[corner];
     const Index first = CornerAfter(corner, 1), second = CornerAfter(corner, 2);
     const Index* const vertices = this->Mesh.TriangleVertices().data();
+    this->Reach(vertices[first], start + frame.LeftLength, source,
+      { first, this->Frames.Angle(first), { vertex, first } });
     this->Reach(
-      vertices[first], start + frame.LeftLength, source, { first, this->Frames.Angle(first) });
-    this->Reach(vertices[second], start + frame.RightLength, source, { second, 0.0 });
+      vertices[second], start + frame.RightLength, source, { second, 0.0, { vertex, second } });
   };
   if (way.Corner < 0 || this->Frames.PassingAt(vertex) == EdgeFrames::Passing::All)
   {
