@@ -44,7 +44,7 @@ FILTERS = [
     Filter("mumford_shah", "vtkMumfordShahFilter", ("MumfordShah",)),
     Filter("segment", "vtkSurfaceSegmentationFilter", ("Segmentation", "RegionBoundaries")),
     Filter("interpolate", "vtkSurfaceInterpolationFilter",
-           ("Interpolation", "InterpolationField", "InterpolationRun")),
+           ("Interpolation", "InterpolationField", "InterpolationOutliers", "InterpolationRun")),
     Filter("harmonic_map", "vtkHarmonicMapFilter",
            ("HarmonicMap", "HarmonicMapBehaviour", "HarmonicMapEnergy", "TangentMaps", "VertexUpdating")),
     Filter("denoise_mesh", "vtkSurfaceDenoisingFilter", ("SurfaceDenoising",)),

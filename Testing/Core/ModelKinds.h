@@ -343,6 +343,14 @@ inline std::vector<ModelKind> AllModelKinds()
       },
       Content::Colors, Exemption::Allocation),
     MakeKind<Spline>(
+      "InterpolationRobust", 1,
+      [](Spline& s)
+      {
+        s.Robust = true;
+        s.LeaveOneOut = true;
+      },
+      Content::Scalars, Exemption::Allocation),
+    MakeKind<Spline>(
       "InterpolationFree", 1, [](Spline& s) { s.Boundary = RimCondition::Free; },
       Content::ScalarsOnCells, Exemption::Allocation),
   };

@@ -42,6 +42,9 @@ void RunDenoising(Bytes& bytes, const TriangleMesh& mesh, const Points& points)
   const double length = (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
   settings.NoiseLevel = bytes.Flip() ? length * bytes.Size(3.0) : 0.0;
   settings.Type = static_cast<SurfaceType>(bytes.Below(3));
+  settings.NoiseLength = bytes.Flip(4) ? bytes.Size(1.0) : 0.0;
+  settings.CreaseAngle = bytes.Flip(4) ? 10.0 * bytes.Below(19) : 0.0;
+  settings.DisplacementLimit = bytes.Flip(4) ? length * bytes.Size(3.0) : 0.0;
   std::vector<char> fixed;
   if (bytes.Flip())
   {

@@ -321,11 +321,13 @@ bool RunInterpolation(
   settings.Rim = bytes.Flip(4) ? RimCondition::Free : RimCondition::Natural;
   settings.KeepRange = bytes.Flip(4);
   settings.ComputeError = bytes.Flip();
+  settings.ComputeLeverage = bytes.Flip(4);
   if (values.Count() == 0)
   {
     return true;
   }
-  InterpolationModel model(assembler, CotanWeights(mesh), values, settings);
+  InterpolationModel model(
+    assembler, CotanWeights(mesh), values, settings, SerialFor(), bytes.Flip(4));
   std::vector<double> start(model.CheckpointSize());
   model.Save(start.data());
   try
