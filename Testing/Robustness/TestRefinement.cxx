@@ -85,10 +85,11 @@ TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
 {
   const auto refining = this->GetParam().Make();
   static const Spheres plain(-1), withMask(1), withSources(3), withWeights(5);
-  const Spheres& spheres = refining->IsA("vtkSurfaceDistanceFilter") ? withSources
-    : HasInputArray(refining, 1)                                     ? withMask
-    : HasInputArray(refining, 5)                                     ? withWeights
-                                                                     : plain;
+  const bool hasMarks = refining->IsA("vtkSurfaceDistanceFilter") || HasInputArray(refining, 6);
+  const Spheres& spheres = hasMarks ? withSources
+    : HasInputArray(refining, 1)    ? withMask
+    : HasInputArray(refining, 5)    ? withWeights
+                                    : plain;
   const auto given = this->GetParam().Make();
   vtkSurfaceFilter::SafeDownCast(refining)->SetRefineTo(Length);
   refining->SetInputData(spheres.Coarse);
