@@ -109,11 +109,15 @@ class Paths(unittest.TestCase):
         for place, message in ((8, "start has 8; allowed: 0 to 7"), (1.5, "start is 1.5; allowed: "),
                                ([0, 1], r"start is \[0, 1\]; allowed: "), ("a", "start has elements of type"),
                                ((0, [0.5, 0.5, 0.5]), "start.1. is .*allowed: three numbers"),
+                               ((0, [0.5, 0.5]), r"start is \(0, .*; allowed: a row of points"),
                                ((9, [1, 0, 0]), "start.0. has 9; allowed: 0 to 5"),
                                ((0, [1, 0, 0]), "start.0. has face 0 with 4 points; allowed: triangles"),
                                ([0, np.nan, 0], "start is .*allowed: ")):
             with self.assertRaisesRegex(ValueError, message):
                 sd.geodesic_path(ROOM, place, 0)
+        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "^1 of 1 points that are given is farther") as one:
+            sd.geodesic_path(ROOM, 0, [60, 0, 0])
+        self.assertNotIn("maximum_distance", str(one.warning))
         with self.assertRaisesRegex(ValueError, r"points\[1\] has 99; allowed: 0 to 7"):
             sd.path_through(ROOM, [0, 99])
         for points in ([], np.zeros((0, 3)), 5):
