@@ -5,8 +5,10 @@
 #include "Run/DistanceRun.h"
 
 #include "Core/Geodesics/GeodesicDisk.h"
+#include "Run/FarPoints.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -95,8 +97,16 @@ std::vector<MeshPlace> DistanceRun::FindPlaces(
   take(this->FindPlaced(ofTriangles), 1);
   if (!rows[2].empty())
   {
-    const SourceSet set = this->FindProjected(drawn, inSpace, 0.0, progress);
-    this->Found.Farness = set.Farness;
+    const Surface& surface = *this->Domain;
+    if (!this->Projection)
+    {
+      this->Projection = std::make_unique<const SourceProjection>(drawn.ReadSurface(), surface);
+    }
+    SourceSet set;
+    ProjectedSources projected = this->Projection->Project(inSpace, 0.0, {}, progress);
+    set.Pieces = std::move(projected.Pieces);
+    this->Found.Farness =
+      DescribeFarPoints("that are given", projected.Places, projected.Distances, surface, false);
     take(set, 2);
   }
   for (std::size_t k = 0; k < places.size(); ++k)

@@ -72,7 +72,7 @@ Shift FindShift(const Points& places, const Surface& surface)
 } // namespace
 
 Sentence DescribeFarPoints(const char* kind, const Points& places,
-  const std::vector<double>& distances, const Surface& surface)
+  const std::vector<double>& distances, const Surface& surface, bool canLeaveOut)
 {
   constexpr double edges = 5.0;
   constexpr double least = 0.02; // of the diagonal
@@ -110,7 +110,11 @@ Sentence DescribeFarPoints(const char* kind, const Points& places,
            << ") would bring them to it, as another origin of coordinates needs";
     }
   }
-  return text << " (set " << Word::Setting("MaximumDistance") << " to leave out those beyond it)";
+  if (canLeaveOut)
+  {
+    text << " (set " << Word::Setting("MaximumDistance") << " to leave out those beyond it)";
+  }
+  return text;
 }
 
 void ReportDistances(

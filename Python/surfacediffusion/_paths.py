@@ -251,7 +251,7 @@ def _number_places(surface: Surface, places: dict[str, Any]) -> tuple[Any, ...]:
         if isinstance(place, numbers.Integral) or (isinstance(place, np.ndarray) and place.ndim == 0):
             points[k] = _as_rows(name, place, surface.n_points, "points")[0]
         elif isinstance(place, tuple) and len(place) == 2:
-            if _count_axes(place[0]) or _count_axes(place[1]) != 1:
+            if _count_axes(place[0]) or _count_axes(place[1]) != 1 or len(place[1]) != 3:
                 raise ValueError(allowed)
             rows, weights = _as_places_in_triangles(surface, place[0], [place[1]], name)
             triangles[k], coordinates[k] = rows[0], weights[0]
