@@ -22,6 +22,7 @@ WORDS = {
     "enhance": "s.off v.npy out.npy", "edges": "s.off v.npy out.npy", "segment": "s.off v.npy out.npy",
     "refine": "s.off 0.3 out.off", "texture": "s.off 0.9 out.off", "directions": "s.off out.npy",
     "curvature": "s.off out.npy", "derivatives": "s.off v.npy out.npy", "distance": "s.off out.npy --from 0",
+    "path": "s.off out.npy --from 0 --to 1",
     "normals": "s.off out.npy", "fwhm": "s.off many.npy", "scale-filter": "s.off v.npy 0.3 out.npy",
     "spectrum": "s.off v.npy 0.3 3", "random-field": "s.off out.npy --fwhm 0.3",
     "surrogates": "s.off v.npy out.npy", "resample": "s.off s.off v.npy out.npy", "info": "s.off v.npy"}

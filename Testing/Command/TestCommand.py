@@ -21,8 +21,8 @@ import samples
 from samples import COLOURS, FACES, HAS_VTK, N, NOISE, POINTS, SMOOTH, nib, run
 
 from surfacediffusion import (
-    Surface, denoise_mesh, distance, get_number_of_threads, heat, interpolate, intrinsic_tv, nearest_sources,
-    set_number_of_threads,
+    Surface, denoise_mesh, distance, geodesic_path, get_number_of_threads, heat, interpolate, intrinsic_tv,
+    nearest_sources, path_through, set_number_of_threads,
 )
 from surfacediffusion.command.inputs import vertex_areas
 from surfacediffusion.files import read_data, read_surface
@@ -463,6 +463,30 @@ class OtherCommands(CommandTest):
         self.succeed("distance lh.surf.gii out.npy --from 40 --from 3 --nearest near.npy")
         expected = nearest_sources(self.surface, [40, 3]).source + 1
         np.testing.assert_array_equal(np.load("near.npy").ravel(), expected)
+
+    def test_signed_distance_is_negative_in_the_region(self):
+        region = POINTS[:, 2] > 4
+        samples.write_gifti("region.func.gii", {"north": region.astype(float)})
+        self.succeed("distance lh.surf.gii region.func.gii out.npy --signed")
+        found = np.load("out.npy").ravel()
+        np.testing.assert_allclose(found, distance(self.surface, region, signed=True), rtol=1e-6)
+        self.assertTrue((found[region] <= 0).all() and (found[~region] >= 0).all() and found.min() < -5)
+
+    def test_path_between_places(self):
+        expected = path_through(self.surface, [3, POINTS[40], 7], closed=True)
+        place = ",".join(map(repr, POINTS[40].tolist()))
+        report = self.report(f"path lh.surf.gii path.npy --from 3 --by={place} --to 7 --closed")
+        np.testing.assert_allclose(np.load("path.npy"), expected.points, atol=1e-5)
+        self.assertAlmostEqual(report["length"], expected.length, places=4)
+        out = self.succeed("path lh.surf.gii path.vtk --from 3 --to 7")
+        self.assertRegex(out, "^path.vtk: length ")
+        lines = Path("path.vtk").read_text().splitlines()
+        expected = geodesic_path(self.surface, 3, 7).points
+        count = len(expected)
+        np.testing.assert_allclose([[float(x) for x in line.split()] for line in lines[5:5 + count]], expected,
+                                   atol=1e-5)
+        self.assertEqual(lines[4:5] + lines[5 + count:], [
+            f"POINTS {count} double", f"LINES 1 {count + 1}", " ".join(map(str, [count, *range(count)]))])
 
     def test_distance_of_what_no_way_reaches_is_missing(self):
         samples.write_surface("two.surf.gii", np.vstack([POINTS, POINTS + 30]),

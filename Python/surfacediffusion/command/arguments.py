@@ -33,6 +33,7 @@ COMMANDS = (
     shape.add_curvature,
     distances.add_derivatives,
     distances.add_distance,
+    distances.add_path,
     denoising.add_normals,
     scales.add_fwhm,
     scales.add_scale_filter,

@@ -1,17 +1,17 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Distances along a surface, and derivatives of data on it: distance, derivatives."""
+"""Distances along a surface, paths on it, and derivatives of data: distance, path, derivatives."""
 from __future__ import annotations
 
 import numpy as np
 
-from .. import conduction_velocity, nearest_sources
+from .. import conduction_velocity, nearest_sources, path_through
 from .. import derivatives as derive
 from ..files import FileError, new_data
-from ..files.content import read_content
+from ..files.content import kind_of_name, read_content, write_atomically
 from . import common, inputs, values
 from .report import number
-from .stages import read_surface_for_output, write_new
+from .stages import read_surface_for_output, write_array, write_new
 
 SOURCES = f"""
 SOURCES: GIFTI, FreeSurfer (.label, curv, .mgh, ...), NumPy (.npy), text (.txt), or a PLY or VTK file with
@@ -43,6 +43,9 @@ def add_distance(commands):
     parser.add_argument("--speed", metavar="FILE",
                         help="the speed of fronts at the vertices, 0 or more; faces of speed 0 are "
                              "barriers")
+    parser.add_argument("--signed", action="store_true",
+                        help="the sources are a region, its nonzero vertices: distances from its boundary, "
+                             "below 0 inside")
     parser.add_argument("--nearest", metavar="FILE",
                         help="also write which source is the nearest one: the value in SOURCES, or the "
                              "place among --from, from 1; 0 where no way arrives")
@@ -53,6 +56,10 @@ def distance(arguments, report):
         raise inputs.ArgumentProblem("the sources are " + (
             "missing" if arguments.starts is None else "both SOURCES and --from")
             + "; allowed: one of SOURCES and --from")
+    if arguments.signed and arguments.sources is None:
+        raise inputs.ArgumentProblem("--signed needs a region; allowed: with SOURCES")
+    if arguments.signed:
+        inputs.refuse(arguments, ["--nearest"], "with --signed", "without it")
     surface = read_surface_for_output(arguments, report, lengths=True)
     with report.timed("read"):
         sets, numbers, names = _read_sources(arguments, surface)
@@ -63,11 +70,11 @@ def distance(arguments, report):
     nearest = arguments.nearest and new_data(surface, arguments.nearest, names)
     solver = surface.solver
     with report.working("Distance") as progress:
-        results = [nearest_sources(solver, places, speed=speed, method=arguments.method, progress=progress)
+        results = [nearest_sources(solver, _as_region(places, surface) if arguments.signed else places,
+                                   speed=speed, method=arguments.method, signed=arguments.signed,
+                                   progress=progress)
                    for places in sets]
         found = np.column_stack([result.distance for result in results])
-        labels = np.column_stack([np.where(result.source < 0, 0, given[result.source])
-                                  for result, given in zip(results, numbers)])
     reached = np.isfinite(found)
     report.facts.update(
         method=results[0].method.lower(), columns=[
@@ -76,7 +83,63 @@ def distance(arguments, report):
             for name, rows, times, column in zip(names, sets, found.T, reached.T)])
     write_new(arguments, report, target, np.where(reached, found, np.nan))
     if nearest:
+        labels = np.column_stack([np.where(result.source < 0, 0, given[result.source])
+                                  for result, given in zip(results, numbers)])
         nearest.save(arguments.nearest, [labels.astype(np.float32)])
+
+
+def _as_region(rows, surface):
+    region = np.zeros(len(surface.points), dtype=bool)
+    region[rows] = True
+    return region
+
+
+def add_path(commands):
+    parser = commands.add(
+        "path", path,
+        "Find the shortest path on a surface from one place to another, by way of others if they are given. It "
+        "is straight over the faces.",
+        ["scan.ply rim.vtk --from 1041 --to=-3.5,20,4", "part.stl loop.npy --from 12 --by 80 --to 143 --closed"],
+        "\nOUTPUT: the points of the path, as rows of x, y, z (.npy) or a line for ParaView (.vtk).\n")
+    common.mesh(parser)
+    common.output(parser, "the path")
+    for option, what in (("--from", "where it begins"), ("--to", "where it ends")):
+        parser.add_argument(option, dest=option[2:] + "_", metavar="PLACE", type=values.place, required=True,
+                            help=what + ": the number of a vertex, from 0, or x,y,z, which stands for the "
+                                        "nearest place of the surface")
+    parser.add_argument("--by", metavar="PLACE", action="append", type=values.place, default=[],
+                        help="a place between; may be given several times")
+    parser.add_argument("--closed", action="store_true", help="lead back to the begin")
+
+
+def path(arguments, report):
+    kind = kind_of_name(arguments.output)
+    if kind not in ("npy", "vtk"):
+        raise FileError(f"{arguments.output}: the name announces no format for paths; allowed: .npy, .vtk")
+    surface = read_surface_for_output(arguments, report, lengths=True)
+    places = [arguments.from_, *arguments.by, arguments.to_]
+    for place in places:
+        if isinstance(place, int) and place >= len(surface.points):
+            raise inputs.ArgumentProblem(f"a place is {place}; allowed: 0 to {len(surface.points) - 1}, the "
+                                         f"vertices of {surface.path}, or x,y,z")
+    with report.working("Path") as progress:
+        found = path_through(surface.solver, places, closed=arguments.closed, progress=progress)
+    report.facts.update(length=number(found.length), points=len(found.points))
+    with report.timed("write"):
+        if kind == "npy":
+            write_array(arguments.output, found.points)
+        else:
+            write_atomically(arguments.output, _polyline(found.points).encode())
+    report.say_written(arguments.output, f"length {found.length:.6g}")
+
+
+def _polyline(points):
+    """A line as a legacy file of VTK."""
+    count = len(points)
+    rows = [" ".join(map(repr, row)) for row in points.tolist()]
+    return "\n".join(["# vtk DataFile Version 3.0", "a path on a surface", "ASCII", "DATASET POLYDATA",
+                      f"POINTS {count} double", *rows, f"LINES 1 {count + 1}",
+                      " ".join(map(str, [count, *range(count)])), ""])
 
 
 def _read_sources(arguments, surface):
