@@ -47,7 +47,7 @@ FILTERS = [
            ("Interpolation", "InterpolationField", "InterpolationOutliers", "InterpolationRun")),
     Filter("harmonic_map", "vtkHarmonicMapFilter",
            ("HarmonicMap", "HarmonicMapBehaviour", "HarmonicMapEnergy", "TangentMaps", "VertexUpdating")),
-    Filter("denoise_mesh", "vtkSurfaceDenoisingFilter", ("SurfaceDenoising",)),
+    Filter("denoise_mesh", "vtkSurfaceDenoisingFilter", ("SurfaceDenoising", "CorrelatedVertexNoise")),
     Filter("turing_texture", "vtkTuringTextureFilter",
            ("ReactionDiffusion", "Kinetics", "CoarseStart")),
     Filter("curvature", "vtkSurfaceCurvatureFilter", ("Curvature",)),

@@ -14,7 +14,7 @@
  * | Divergence | vectors, 3k components | k: the divergence of their tangential parts |
  * | Curl | vectors, 3k components | k: the curl about the normals of the surface |
  * | Laplacian | k components | k: the divergence of the gradient, per length^2 |
- * | ConductionVelocity | times T, k components | 3k: grad T/\|grad T\|^2, and `Speed`, k: 1/\|grad T\| |
+ * | ConductionVelocity | times T, k components | 3k: grad T/\|grad T\|^2, and `Speed`, k: 1/\|grad T\|, `Collision` and `Focus`, k |
  * | Helmholtz | vectors, 3k components | k: `GradientPotential` phi and `CurlPotential` psi, and 3k: `GradientPart`, `CurlPart`, `HarmonicPart` |
  *
  * Times in ms on coordinates in mm give velocities in mm/ms = m/s. Where T does not change, the

@@ -167,7 +167,9 @@ public:
   SURFACEDIFFUSION_SWITCH(KeepRange);
 
   /**
-   * On: the output has the standard error of u. Default: off.
+   * On: the output has the standard error of u and, unless the values hold, `SlopeError`, that of its
+   * derivative in a direction, in the unit of the data over that of the coordinates, without that of the
+   * mean. Default: off.
    */
   SURFACEDIFFUSION_SWITCH(ComputeError);
 

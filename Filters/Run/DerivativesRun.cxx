@@ -46,7 +46,8 @@ void DerivativesSettings::Visit(SettingVisitor& visitor)
       "What is computed: the Gradient of each component, a vector in the tangent "
       "plane; the Divergence or the Curl, its component along the normals, of "
       "vectors; the Laplacian of each component; the ConductionVelocity of "
-      "arrival times T, grad T/|grad T|^2, with its length, the speed; or Helmholtz: "
+      "arrival times T, grad T/|grad T|^2, with its length, the speed, and marks of "
+      "collisions and foci, where it has no direction; or Helmholtz: "
       "the potentials of vectors and the parts that are a gradient, a curl, and neither." },
     this->Quantity,
     { "Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity", "Helmholtz" });
@@ -223,7 +224,8 @@ void DerivativesRun::Update(
       }
       default:
       {
-        Values gradients = operators.Gradients(u) / unit;
+        const Values ofTriangles = operators.Gradients(u) / unit;
+        Values gradients = ofTriangles;
         if (!settings.ResultOnCells)
         {
           gradients = operators.ToVertices(gradients);
@@ -236,6 +238,7 @@ void DerivativesRun::Update(
         else
         {
           this->AddVelocity(std::move(gradients), settings.ResultOnCells);
+          this->AddMeetings(operators, ofTriangles, settings.ResultOnCells);
         }
       }
     }
@@ -319,6 +322,43 @@ void DerivativesRun::AddVelocity(Values gradients, bool onTriangles)
   this->Results.back().Active = Role::Vectors;
   this->Add("Speed", std::move(speeds), onTriangles);
   this->Results.back().IsBesideResult = true;
+}
+
+void DerivativesRun::AddMeetings(
+  const Derivatives& operators, const Values& gradients, bool onTriangles)
+{
+  // Of the divergence of directions, times the root of the control area: where fronts meet head on it is -2 to
+  // -3, and -1 to -1.5 at right angles; at a distance r from a focus it is the length of an edge over r.
+  constexpr double largestTurn = 0.7;
+  const TriangleMesh& mesh = this->Domain->InputMesh();
+  Values directions = gradients;
+  for (Eigen::Index t = 0; t < directions.rows(); ++t)
+  {
+    for (Eigen::Index c = 0; c < directions.cols(); c += 3)
+    {
+      directions.row(t).segment<3>(c).stableNormalize();
+    }
+  }
+  const Values turns =
+    mesh.ControlAreas().cwiseSqrt().asDiagonal() * operators.Divergence(directions);
+  const auto add = [&](const char* name, const Values& marks)
+  {
+    Values rows = marks;
+    if (onTriangles)
+    {
+      rows.resize(mesh.NumberOfTriangles(), marks.cols());
+      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+      {
+        const auto corners = mesh.TriangleVertices().row(t);
+        rows.row(t) =
+          marks.row(corners[0]).cwiseMax(marks.row(corners[1])).cwiseMax(marks.row(corners[2]));
+      }
+    }
+    this->Add(name, std::move(rows), onTriangles);
+    this->Results.back().IsBesideResult = true;
+  };
+  add("Collision", (turns.array() < -largestTurn).cast<double>());
+  add("Focus", (turns.array() > largestTurn).cast<double>());
 }
 
 void DerivativesRun::AddResult(

@@ -64,6 +64,8 @@ private:
   void AddParts(const Derivatives& operators, const Values& ofTriangles,
     const DerivativesSettings& settings, const ProgressMonitor& progress);
   void AddVelocity(Values gradients, bool onTriangles);
+  /// Where fronts meet and begin, by the gradients of times on triangles.
+  void AddMeetings(const Derivatives& operators, const Values& gradients, bool onTriangles);
   void Add(const char* name, Values rows, bool onTriangles);
 
   Fingerprint MissingVersion; ///< of the data that MissingRows belong to

@@ -440,9 +440,15 @@ std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResu
     Output error{ "Error", Place::PerVertex, OutputType::Real, unit * found.Error };
     error.IsBesideResult = true;
     error.MayBeInfinite = true;
-    error.Elsewhere = none;
     error.DataName = model.NameOfSamples;
-    outputs.push_back(std::move(error));
+    error.Elsewhere = none;
+    outputs.push_back(error);
+    if (!this->Exact)
+    {
+      error.Name = "SlopeError";
+      error.Rows = unit / state.Surface.Mesh().LengthUnit() * found.SlopeError;
+      outputs.push_back(std::move(error));
+    }
   }
   if (!this->Exact)
   {

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._functions import SHARED, derivatives
-from ._result import ConductionVelocity, HelmholtzParts
-from ._surface import SurfaceLike
+from ._result import BAND_90, ConductionVelocity, HelmholtzParts, InterpolationResult
+from ._surface import SurfaceLike, require_shape
 
 __all__ = ["conduction_velocity", "curl", "divergence", "gradient", "helmholtz", "laplacian"]
 
@@ -25,7 +25,7 @@ def _with_arguments(function: F) -> F:
     others = [parameter for name, parameter in of_all.items()
               if parameter.kind is inspect.Parameter.KEYWORD_ONLY and name != "quantity"]
     function.__signature__ = own.replace(  # type: ignore[attr-defined]
-        parameters=[*list(own.parameters.values())[:2], *others])
+        parameters=[*(each for each in own.parameters.values() if each.name != "others"), *others])
     names = [other.name for other in others if f"\n    {other.name} : " not in (function.__doc__ or "")]
     text = inspect.cleandoc(function.__doc__ or "").replace("{surface}", SHARED["surface"])
     function.__doc__ = text.replace(
@@ -150,7 +150,9 @@ def laplacian(surface: SurfaceLike, values: ArrayLike, **others: Any) -> NDArray
 
 
 @_with_arguments
-def conduction_velocity(surface: SurfaceLike, times: ArrayLike, **others: Any) -> ConductionVelocity:
+def conduction_velocity(
+    surface: SurfaceLike, times: ArrayLike, *, error: InterpolationResult | None = None, **others: Any
+) -> ConductionVelocity:
     """Compute the velocity of a wave on a surface from its arrival times T: grad T/|grad T|^2.
 
     Times in ms on coordinates in mm give mm/ms = m/s. Where the times do not change, the velocity is
@@ -165,12 +167,19 @@ def conduction_velocity(surface: SurfaceLike, times: ArrayLike, **others: Any) -
     smoothing_fwhm : float, default 0
         The width, in the unit of the coordinates, of the Gaussian that smooths the times first:
         several edges for times with noise. Linear functions on planes stay as they are.
+    error : InterpolationResult, optional
+        The result of :func:`interpolate` with ``compute_error=True`` that the times are of. It gives the band
+        of the speed, 1/(abs(grad T) +- 1.645 e) with the standard error e of slopes. Not with
+        `smoothing_fwhm` or `result_on_faces`.
     {others}
 
     Returns
     -------
     ConductionVelocity
-        `velocity` (n, 3) and `speed` (n,), at the faces with `result_on_faces`.
+        The pair of `velocity` (n, 3) and `speed` (n,), at the faces with `result_on_faces`, with `direction`
+        and the marks `collision` and `focus` of where it is undetermined. With `error` also `speed_lower`
+        and `speed_upper`. The smoothness that interpolation assumes is rougher than waves are, so that the
+        bands hold more than 90 %.
 
     Examples
     --------
@@ -184,8 +193,39 @@ def conduction_velocity(surface: SurfaceLike, times: ArrayLike, **others: Any) -
     >>> float(found.speed.round(6).min()), found.velocity.shape
     (0.6, (200, 3))
     """
-    found: Any = derivatives(surface, times, quantity="ConductionVelocity", _outputs=[], **others)
-    return ConductionVelocity(found.values, found.speed)
+    slope_error = None if error is None else _slope_error_of(error, others)
+    outputs: list[Any] = []
+    derivatives(surface, times, quantity="ConductionVelocity", _outputs=outputs, **others)
+    named = {output.name: output.values for output in outputs}
+    result = ConductionVelocity(named["ConductionVelocity"], named["Speed"])
+    speeds = np.asarray(result.speed)
+    vectors = result.velocity.reshape(*speeds.shape, 3)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        result.direction = np.where(speeds[..., None] > 0.0, vectors / speeds[..., None], 0.0 * vectors).reshape(
+            result.velocity.shape)
+    result.collision, result.focus = named["Collision"] > 0.0, named["Focus"] > 0.0
+    if slope_error is not None:
+        require_shape("error.slope_error", slope_error, slope_error.shape == speeds.shape,
+                      f"{speeds.shape}, that of the speed")
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slowness = np.where(speeds > 0.0, 1.0 / speeds, 0.0)
+            lower = 1.0 / (slowness + BAND_90 * slope_error)
+            upper = np.maximum(slowness - BAND_90 * slope_error, 0.0)
+            upper = np.where(upper > 0.0, 1.0 / upper, np.inf)
+        undetermined = result.collision | result.focus | np.isnan(speeds) | np.isnan(slope_error)
+        result.speed_lower = np.where(undetermined, np.nan, lower)
+        result.speed_upper = np.where(undetermined, np.nan, upper)
+    return result
+
+
+def _slope_error_of(error: Any, others: dict[str, Any]) -> NDArray[np.float64]:
+    if not isinstance(error, InterpolationResult) or error.slope_error.size == 0:
+        raise ValueError("error has no errors of slopes; allowed: the result of interpolate() with "
+                         "compute_error=True and without exact=True")
+    if others.get("smoothing_fwhm") or others.get("result_on_faces"):
+        raise ValueError("error is given with smoothing_fwhm or result_on_faces; allowed: times as interpolate() "
+                         "has smoothed them, at points")
+    return error.slope_error
 
 
 @_with_arguments

@@ -23,7 +23,7 @@ __all__ = [
 
 
 #: Of the normal distribution: so many deviations on each side hold 90 %.
-_BAND_90 = 1.6448536269514722
+BAND_90 = 1.6448536269514722
 
 
 class ArrayResult:
@@ -258,11 +258,23 @@ class HelmholtzParts(NamedTuple):
     harmonic_part: NDArray[np.float64]  #: the rest, (n, 3)
 
 
-class ConductionVelocity(NamedTuple):
-    """The velocity of a wave on a surface, and its length, the speed."""
+class _Velocity(NamedTuple):
+    velocity: NDArray[np.float64]
+    speed: NDArray[np.float64]
+
+
+class ConductionVelocity(_Velocity):
+    """The velocity of a wave on a surface, and its length, the speed: a pair."""
 
     velocity: NDArray[np.float64]  #: (n, 3), in the tangent planes
     speed: NDArray[np.float64]  #: (n,)
+    direction: NDArray[np.float64]  #: (n, 3), the unit vector of the velocity; 0 where this is 0
+    collision: NDArray[np.bool_]  #: (n,), where fronts meet, and the direction turns within an edge
+    focus: NDArray[np.bool_]  #: (n,), where fronts begin, likewise
+    #: (n,), a band that holds 90 % of speeds, with `error`. NaN at collisions and foci; the upper bound is
+    #: infinite where the times may be constant.
+    speed_lower: NDArray[np.float64] | None = None
+    speed_upper: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True)
@@ -412,6 +424,9 @@ class InterpolationResult(ModelResult):
     ----------
     error : ndarray
         With ``compute_error=True`` the standard error of each of the values. No row otherwise.
+    slope_error : ndarray
+        Likewise, but not with ``exact=True``, that of the derivative of `values` in a direction, in their
+        unit over that of the coordinates: :func:`conduction_velocity` takes it.
     smoothing : ndarray, shape (k,)
         mu of each component, found or given, in the unit of `smoothing`; 0 if the values hold. Of
         several connected parts, each of which has its own, that of the part with the most values.
@@ -446,6 +461,7 @@ class InterpolationResult(ModelResult):
     """
 
     error: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
+    slope_error: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
     smoothing: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
     score: NDArray[np.float64] = field(default_factory=lambda: np.empty(0), repr=False)
     misfit: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
@@ -469,11 +485,11 @@ class InterpolationResult(ModelResult):
 
     @property
     def lower(self) -> NDArray[np.float64]:
-        return self.values - _BAND_90 * self.error
+        return self.values - BAND_90 * self.error
 
     @property
     def upper(self) -> NDArray[np.float64]:
-        return self.values + _BAND_90 * self.error
+        return self.values + BAND_90 * self.error
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@
 using namespace SurfaceDiffusion;
 using namespace SurfaceDiffusion::Testing;
 
-TEST(SurfaceDenoising, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
+TEST(CorrelatedVertexNoise, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
 {
   for (const Surface& surface : { Icosphere(5), Strip(80, 60, 8.0, 6.0) })
   {
@@ -33,7 +33,7 @@ TEST(SurfaceDenoising, NoiseThatIsCorrelatedOverSeveralEdgesIsFoundAndRemoved)
 }
 
 /// Where edges are short, quadrics through two rings follow the noise.
-TEST(SurfaceDenoising, NoiseIsFoundOnUnevenTriangles)
+TEST(CorrelatedVertexNoise, NoiseIsFoundOnUnevenTriangles)
 {
   Surface surface = LBlock(32);
   const Eigen::RowVector3d middle =
@@ -56,7 +56,7 @@ TEST(SurfaceDenoising, NoiseIsFoundOnUnevenTriangles)
 }
 
 /// Where curvature and edges of the shape add to the deviations from quadrics.
-TEST(SurfaceDenoising, CorrelatedNoiseIsFoundBesideTheShape)
+TEST(CorrelatedVertexNoise, CorrelatedNoiseIsFoundBesideTheShape)
 {
   for (const Surface& surface : { LBlock(32), Torus(120, 60) })
   {
@@ -70,7 +70,7 @@ TEST(SurfaceDenoising, CorrelatedNoiseIsFoundBesideTheShape)
 }
 
 /// Noise is everywhere the same, and relief is not.
-TEST(SurfaceDenoising, ReliefThatResemblesNoiseStaysAndIsReported)
+TEST(CorrelatedVertexNoise, ReliefThatResemblesNoiseStaysAndIsReported)
 {
   const Surface surface = Icosphere(5);
   Surface relief = WithCorrelatedNoise(surface, 0.2, 2.0);
@@ -90,7 +90,7 @@ TEST(SurfaceDenoising, ReliefThatResemblesNoiseStaysAndIsReported)
 }
 
 /// It resembles details, below the level that is given.
-TEST(SurfaceDenoising, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
+TEST(CorrelatedVertexNoise, CorrelatedNoiseOfAGivenLevelIsRemovedFromAllShapes)
 {
   for (const Surface& surface : { LBlock(32), Torus(120, 60), Icosphere(5) })
   {
@@ -137,7 +137,7 @@ Surface WavyTorus(int length)
 } // namespace
 
 /// Waves of six triangles were taken for correlated noise.
-TEST(SurfaceDenoising, RegularWavesAreNoNoise)
+TEST(CorrelatedVertexNoise, RegularWavesAreNoNoise)
 {
   for (const int length : { 6, 8, 12, 16 })
   {
@@ -148,7 +148,7 @@ TEST(SurfaceDenoising, RegularWavesAreNoNoise)
   }
 }
 
-TEST(SurfaceDenoising, NeitherWhiteNoiseNorShapeIsCorrelatedNoise)
+TEST(CorrelatedVertexNoise, NeitherWhiteNoiseNorShapeIsCorrelatedNoise)
 {
   for (const Surface& surface :
     { Icosphere(5), Torus(80, 40), LBlock(32), NoisyAlongNormals(Icosphere(5), 0.3),
@@ -163,7 +163,7 @@ TEST(SurfaceDenoising, NeitherWhiteNoiseNorShapeIsCorrelatedNoise)
   }
 }
 
-TEST(SurfaceDenoising, NoiseOfAGivenLengthIsRemovedFromAllShapes)
+TEST(CorrelatedVertexNoise, NoiseOfAGivenLengthIsRemovedFromAllShapes)
 {
   for (const Surface& surface : { LBlock(32), Torus(120, 60), Cylinder(120, 60) })
   {

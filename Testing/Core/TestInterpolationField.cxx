@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Interpolation as the mean of a Gaussian field, and its smoothing of noise.
+#include "Core/Models/Interpolation/SlopeSquares.h"
 #include "Core/Models/Interpolation/SmoothnessEnergy.h"
 #include "Interpolation.h"
 
@@ -309,6 +310,12 @@ TEST(InterpolationField, NinetyPercentOfTruthsAreInsideTheBandOfTheirError)
   }
   const auto data = ValuesAt(mesh, noisy, [](Index i) { return i % 4 == 0; });
   const Interpolation::Result result = Interpolate(assembler, data, settings);
+  // Slopes of the difference have the deviation that is expected.
+  const double ofSlopes = SlopeSquares(mesh, SerialFor())
+                            .Of(result.U - truths, Vector::Constant(fields, 1.0 / fields))
+                            .cwiseQuotient(result.SlopeError.col(0).cwiseAbs2())
+                            .mean();
+  EXPECT_NEAR(ofSlopes, 1.0, 0.05);
   constexpr double band = 1.6449; // of 90 %
   const auto isInside = ((result.U - truths).cwiseAbs().array() <= band * result.Error.array());
   const double share = static_cast<double>(isInside.count()) / static_cast<double>(truths.size());

@@ -3,16 +3,18 @@
 //
 // The standard error of SmoothInterpolation of few values, whose mu is found.
 
+#include "Core/Models/Interpolation/SlopeSquares.h"
 #include "Core/Models/Interpolation/SmoothInterpolationWork.h"
 #include "Core/Models/Interpolation/SmoothingPosterior.h"
 
 #include <limits>
+#include <utility>
 
 namespace SurfaceDiffusion
 {
 
 /// Of the fit of a column, with which work.Fit is prepared. NaN if it is not known.
-Vector SmoothInterpolation::ErrorOverSmoothing(
+std::pair<Vector, Vector> SmoothInterpolation::ErrorOverSmoothing(
   Work& work, Result& result, Eigen::Index column, const ProgressMonitor& progress) const
 {
   const double mu = work.Fit.GetSmoothing();
@@ -23,14 +25,18 @@ Vector SmoothInterpolation::ErrorOverSmoothing(
     work.Rows.Scatter.col(column).sum() > 0.0;
   if (!posterior.IsKnown() || !showsDeviation)
   {
-    return Vector::Constant(work.Start.rows(), std::numeric_limits<double>::quiet_NaN());
+    const Vector unknown =
+      Vector::Constant(work.Start.rows(), std::numeric_limits<double>::quiet_NaN());
+    return { unknown, unknown };
   }
   const double other = posterior.Resolving(mu);
   if (other != mu)
   {
     this->Prepare(work, result, other, work.None, progress.Part(0.0, 0.2));
   }
-  Vector squares = posterior.SquareOfError(work.Fit, mu, progress.Part(0.2, 0.8));
+  const SlopeSquares slopes(this->Assembly->Mesh(), this->Parallel);
+  Vector ofSlopes;
+  Vector squares = posterior.SquareOfError(work.Fit, mu, slopes, ofSlopes, progress.Part(0.2, 0.8));
   if (this->Options.Kappa > 0.0)
   {
     const Vector ofMean =
@@ -44,7 +50,7 @@ Vector SmoothInterpolation::ErrorOverSmoothing(
   {
     this->Prepare(work, result, mu, work.None, progress.Part(0.9, 1.0));
   }
-  return squares.cwiseSqrt();
+  return { squares.cwiseSqrt(), ofSlopes.cwiseSqrt() };
 }
 
 } // namespace SurfaceDiffusion

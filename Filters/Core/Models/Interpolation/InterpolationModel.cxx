@@ -49,6 +49,7 @@ SmoothInterpolation::Result Join(
   all.Columns.clear();
   all.U.resize(all.U.rows(), columns);
   all.Error.resize(all.Error.rows(), columns);
+  all.SlopeError.resize(all.SlopeError.rows(), columns);
   all.Leverage = Values::Zero(all.Leverage.rows() > 0 ? leftOut.rows() : 0, columns);
   for (Eigen::Index c = 0; c < columns; ++c)
   {
@@ -56,6 +57,7 @@ SmoothInterpolation::Result Join(
     all.Columns.push_back(fit.Columns.front());
     all.U.col(c) = fit.U;
     all.Error.col(c) = fit.Error;
+    all.SlopeError.col(c) = fit.SlopeError;
     Eigen::Index row = 0;
     for (Eigen::Index i = 0; i < all.Leverage.rows(); ++i)
     {

@@ -4,12 +4,14 @@
 // SmoothInterpolation: of values that are smoothed.
 
 #include "Core/Models/Interpolation/InfluenceSpectrum.h"
+#include "Core/Models/Interpolation/SlopeSquares.h"
 #include "Core/Models/Interpolation/SmoothInterpolationWork.h"
 #include "Core/Statistics/StudentFactor.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -172,6 +174,7 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     return false;
   }
   Vector deviations;
+  Vector ofSlopes; // their deviations
   Flags isOpen;
   if (this->Options.ComputeError)
   {
@@ -188,11 +191,16 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
   }
   if (this->Options.ComputeError && work.Spectrum)
   {
-    deviations = this->ErrorOverSmoothing(work, result, first, progress.Part(0.4, 0.8));
+    std::tie(deviations, ofSlopes) =
+      this->ErrorOverSmoothing(work, result, first, progress.Part(0.4, 0.8));
   }
   else if (this->Options.ComputeError)
   {
-    deviations = (work.Fit.InverseDiagonal(progress.Part(0.4, 0.7)).cwiseMax(0.0) +
+    const SlopeSquares slopes(this->Assembly->Mesh(), this->Parallel);
+    std::vector<InverseEntry> edges = slopes.Edges();
+    const Vector diagonal = work.Fit.InverseDiagonal(progress.Part(0.4, 0.7), &edges);
+    ofSlopes = slopes.OfCovariance(diagonal, edges).cwiseSqrt();
+    deviations = (diagonal.cwiseMax(0.0) +
       this->VarianceOfMean(work, work.None, false, progress.Part(0.7, 0.8)))
                    .cwiseSqrt();
   }
@@ -219,6 +227,8 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     {
       result.Error.col(first + c) = // without bounds
         isOpen.select(std::numeric_limits<double>::infinity(), deviations.array());
+      result.SlopeError.col(first + c) =
+        isOpen.select(std::numeric_limits<double>::infinity(), ofSlopes.array());
       result.HasUnknownError = result.HasUnknownError || result.Error.col(first + c).hasNaN();
     }
     else if (this->Options.ComputeError)
@@ -230,9 +240,12 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
           std::sqrt(squares / rows.Weights.sum()) >
             work.RoundOff(first + c, resolved, result.IsFlattest));
       const double factor = this->Options.NoiseLevel > 0.0 ? 1.0 : StudentFactor(left);
-      result.Error.col(first + c) = isOpen.select(std::numeric_limits<double>::infinity(),
-        (isKnown ? factor * found.NoiseLevel : std::numeric_limits<double>::quiet_NaN()) *
-          deviations.array()); // without bounds
+      const double scale =
+        isKnown ? factor * found.NoiseLevel : std::numeric_limits<double>::quiet_NaN();
+      result.Error.col(first + c) = isOpen.select(
+        std::numeric_limits<double>::infinity(), scale * deviations.array()); // without bounds
+      result.SlopeError.col(first + c) =
+        isOpen.select(std::numeric_limits<double>::infinity(), scale * ofSlopes.array());
       result.HasUnknownError = result.HasUnknownError || !isKnown;
     }
     result.U.col(first + c) = u;

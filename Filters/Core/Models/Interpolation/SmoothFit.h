@@ -57,9 +57,11 @@ public:
   Values ToVertices(const Values& v) const;
 
   /// The diagonal of H^-1, of the mu of Prepare().
-  Vector InverseDiagonal(const ProgressMonitor& progress) const
+  /// others: entries along edges of the mesh.
+  Vector InverseDiagonal(
+    const ProgressMonitor& progress, std::vector<InverseEntry>* others = nullptr) const
   {
-    return this->Factor.InverseDiagonal(this->Parallel, progress).head(this->Held.size());
+    return this->Factor.InverseDiagonal(this->Parallel, progress, others).head(this->Held.size());
   }
 
   /// Of each value b H^-1 b^T with its row b of B, likewise.

@@ -148,7 +148,7 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
   result.U = Values::Constant(n, columns, std::numeric_limits<double>::quiet_NaN());
   if (this->Options.ComputeError)
   {
-    result.Error = result.U;
+    result.Error = result.SlopeError = result.U;
   }
   const Eigen::RowVectorXd lowest = merged.Rows.Given.colwise().minCoeff();
   const Eigen::RowVectorXd highest = merged.Rows.Given.colwise().maxCoeff();
@@ -177,6 +177,7 @@ SmoothInterpolation::Result SmoothInterpolation::Fit(
     if (this->Options.ComputeError)
     {
       result.Error.middleRows(begin, size) = part.Error;
+      result.SlopeError.middleRows(begin, size) = part.SlopeError;
     }
     for (Index i = 0; i < rows.Count() && this->Options.ComputeLeverage; ++i)
     {
@@ -244,6 +245,7 @@ SmoothInterpolation::Result SmoothInterpolation::FitPart(const RepeatedValues& r
   if (this->Options.ComputeError)
   {
     result.Error = Values::Zero(n, columns);
+    result.SlopeError = Values::Constant(n, columns, std::numeric_limits<double>::quiet_NaN());
   }
   result.Leverage = Values::Ones(rows.Count(), columns); // of values that hold
   result.PartsWithTooFewValues =

@@ -86,6 +86,10 @@ public:
     /// those whose values do not show a deviation: one, all on a function without energy, or all
     /// reached by the fit. Infinite where the values leave a slope open.
     Values Error;
+    /// With Error, the standard error of the derivative of u in any direction, the root of the mean over
+    /// directions and the triangles around the vertex; without that of the mean from which values are
+    /// measured. NaN where values hold, infinite where they leave the slope open.
+    Values SlopeError;
     /// How far the fit follows each given value, 0 to 1, d x k: the derivative of u(p_i) by d_i. Without
     /// the value i, u(p_i) differs from d_i by the residual over 1 less the leverage, at the same mu. No
     /// rows unless asked for.
@@ -138,7 +142,8 @@ private:
   Flags FindOpen(const Work& work) const;
   Vector VarianceOfMean(
     Work& work, const Flags& held, bool isExact, const ProgressMonitor& progress) const;
-  Vector ErrorOverSmoothing(
+  /// The standard error and that of slopes.
+  std::pair<Vector, Vector> ErrorOverSmoothing(
     Work& work, Result& result, Eigen::Index column, const ProgressMonitor& progress) const;
   static Vector FindLeverage(const Work& work, const ProgressMonitor& progress);
   double StartSmoothing(const Work& work) const;

@@ -104,8 +104,8 @@ double SmoothingPosterior::MeanOf(double ofNoise, double ofField) const
 ///   u(mu) = sum_j x_j z_j / (s_j + r (1 - s_j))
 /// and, as in SmoothFit::Rescale(),
 ///   H^-1 = (H_0^-1 - sum_j x_j x_j^T (1 - r) / (s_j + r (1 - s_j))) / r.
-Vector SmoothingPosterior::SquareOfError(
-  const SmoothFit& fit, double mu, const ProgressMonitor& progress) const
+Vector SmoothingPosterior::SquareOfError(const SmoothFit& fit, double mu,
+  const SlopeSquares& slopes, Vector& ofSlopes, const ProgressMonitor& progress) const
 {
   const Eigen::ArrayXd shares = this->Spectrum.Eigenvalues(fit.GetSmoothing()).array();
   const auto sizes = [&](double ratio) -> Eigen::ArrayXd
@@ -133,7 +133,10 @@ Vector SmoothingPosterior::SquareOfError(
   const Vector lengths = solver.eigenvalues();
   const Eigen::Index few = (lengths.array() > resolved * lengths[number - 1]).count();
   steps = (steps * solver.eigenvectors().rightCols(few)).eval();
-  Vector squares = ofDiagonal * fit.InverseDiagonal(progress.Part(0.0, 0.3)).cwiseMax(0.0);
+  std::vector<InverseEntry> edges = slopes.Edges();
+  const Vector diagonal = fit.InverseDiagonal(progress.Part(0.0, 0.3), &edges);
+  Vector squares = ofDiagonal * diagonal.cwiseMax(0.0);
+  ofSlopes = ofDiagonal * slopes.OfCovariance(diagonal, edges);
   Values distances = Values::Zero(squares.size(), few);
   const Vector roots = this->Data.Weights.cwiseSqrt();
   constexpr Eigen::Index panel = 32;
@@ -145,8 +148,11 @@ Vector SmoothingPosterior::SquareOfError(
       fit.ToVertices(roots.asDiagonal() * this->Spectrum.Eigenvectors().middleCols(first, columns));
     fit.ApplyInverse(x);
     squares -= x.cwiseAbs2() * ofSquares.segment(first, columns);
+    ofSlopes -= slopes.Of(x, ofSquares.segment(first, columns).cwiseMax(0.0));
+    ofSlopes += slopes.Of(x, (-ofSquares.segment(first, columns)).cwiseMax(0.0));
     distances += x * steps.middleRows(first, columns);
   }
+  ofSlopes = ofSlopes.cwiseMax(0.0) + slopes.Of(distances, Vector::Ones(few));
   return squares.cwiseMax(0.0) + distances.rowwise().squaredNorm();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Core/Models/Interpolation/InfluenceSpectrum.h"
+#include "Core/Models/Interpolation/SlopeSquares.h"
 
 #include <vector>
 
@@ -35,7 +36,9 @@ public:
   /// The mean over mu of the square of the error of the fit u of mu, at each vertex:
   ///   t^2 sigma^2(mu') H^-1(mu') + (u(mu') - u(mu))^2,  sigma^2(mu') = (..)/(m + q) of above,
   /// where t is StudentFactor(m + q), or 1 with a given sigma. fit: prepared with a mu of Resolving().
-  Vector SquareOfError(const SmoothFit& fit, double mu, const ProgressMonitor& progress) const;
+  /// ofSlopes: becomes the same of slopes.
+  Vector SquareOfError(const SmoothFit& fit, double mu, const SlopeSquares& slopes,
+    Vector& ofSlopes, const ProgressMonitor& progress) const;
 
   /// The mean over mu of t^2 sigma^2(mu) (ofNoise + ofField/mu).
   double MeanOf(double ofNoise, double ofField) const;
