@@ -348,7 +348,7 @@ TEST_P(ModelContract, SameBitsOnThreads)
   const CellInput input = this->MakeInput(Plate(70, 1.0)); // several blocks
   const ThreadedFor threads(3);
   SurfaceDiffusion::Run serial(SerialFor()), threaded(threads);
-  EXPECT_TRUE(this->Compute(serial, input) == this->Compute(threaded, input));
+  EXPECT_TRUE(AreSame(this->Compute(serial, input), this->Compute(threaded, input)));
 }
 
 TEST_P(NumberingContract, SameResultInAnyNumberingOrientationAndPosture)
