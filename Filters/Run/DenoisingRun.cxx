@@ -81,9 +81,9 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
   visitor.Number(
     { "NoiseLength", "",
       "Over how many edges points share their noise, as those of depth cameras do: the "
-      "standard deviation, in mean edge lengths, of the kernel that makes such noise "
-      "of independent noise. Below 0.5 the noise is independent. 0: measured, as far as "
-      "noise can be told from relief." },
+      "standard deviation, in units of the mean edge length, of the kernel that makes "
+      "such noise of independent noise. Below 0.5 the noise is independent. 0: measured, "
+      "as far as noise can be told from relief." },
     this->NoiseLength, SettingRange::NonNegative());
   visitor.Choice({ "SurfaceType", "",
                    "CAD: smooth faces, which may meet in sharp edges. Organic: shapes with details "

@@ -21,7 +21,7 @@ ONE_STEP = {"time_integrator": "Exponential", "number_of_time_steps": 1}
 
 
 #: The commands without a row, and what holds them.
-ELSEWHERE = {"cifti-smoothing": "TestWorkbenchCifti", "doctor": "TestDoctor"}
+ELSEWHERE = {"cifti-smoothing": "TestWorkbenchCifti", "doctor": "TestDoctor", "path": "TestCommand"}
 
 
 def polygons():

@@ -18,7 +18,7 @@ GROUPS = ("Data", "Model", "Constraints", "Solver", "Time")
 # All arrays have the C++ setter SetInputArrayToProcess(); the clock has none.
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
-    "FidelityArray", "SeedArray", "DataTermArray", "PointsWithValues", "TimestepValues",
+    "FidelityArray", "SeedArray", "CreaseArray", "DataTermArray", "PointsWithValues", "TimestepValues",
     "Sources", "SourceArray", "SpeedArray", "SourceTimes",
     "Mean",  # a list: SetMean(region, component, value)
 }

@@ -442,7 +442,7 @@ inline std::vector<FilterKind> AllFilters()
         f->SetNoiseLevel(0.03);
         f->SetNoiseLength(1.5);
         f->SetDisplacementLimit(0.02);
-        SetInputArray(f, 6, "mask");
+        SetInputArray(f, 6, "sources");
       }),
     MakeKind<vtkSurfaceReliefFilter>("Relief", "ReliefHeight", 0,
       [](vtkSurfaceReliefFilter* f)

@@ -420,6 +420,8 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
         if (auto* denoising = vtkSurfaceDenoisingFilter::SafeDownCast(f))
         {
           denoising->SetNoiseLevel((scaled ? length : 1.0) * denoising->GetNoiseLevel());
+          denoising->SetDisplacementLimit(
+            (scaled ? length : 1.0) * denoising->GetDisplacementLimit());
         }
         if (auto* derivatives = vtkSurfaceDerivativesFilter::SafeDownCast(f))
         {

@@ -190,6 +190,15 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
     for (int a = 0; a < added->GetNumberOfArrays(); ++a)
     {
       vtkDataArray* const array = added->GetArray(a);
+      const std::string name = array->GetName();
+      // Where no value counts there is nothing to compare, and values that hold have no slopes with an error.
+      if (hasErrors &&
+        (name.find("Residuals") != std::string::npos ||
+          name.find("LeaveOneOut") != std::string::npos ||
+          name.find("SlopeError") != std::string::npos))
+      {
+        continue;
+      }
       for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
       {
         const bool isNew = !before->HasArray(array->GetName());
