@@ -819,7 +819,7 @@ def interpolate(
     return replace(result, values=result.values.reshape(shape),
                    error=result.error.reshape(shape) if result.error.size else result.error,
                    slope_error=result.slope_error.reshape(shape) if result.slope_error.size else result.slope_error,
-                   outliers=result.outliers != 0, _places=_places_of_values(surface, values, points, on_faces))
+                   outliers=result.outliers != 0, _places=(surface, _places_of_values(surface, values, points, on_faces)))
 
 
 @_with_settings

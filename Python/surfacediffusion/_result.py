@@ -475,13 +475,13 @@ class InterpolationResult(ModelResult):
     number_of_far_values: int = 0
     median_distance: float = 0.0
     largest_distance: float = 0.0
-    _places: Any = field(default=None, repr=False)  # of the values, sources of a distance
+    _places: Any = field(default=None, repr=False)  # the surface and the places of the values
 
     @functools.cached_property
     def distance_to_data(self) -> NDArray[np.float64]:
         from ._distance import distance
 
-        return distance(self.surface, self._places)
+        return distance(*self._places)
 
     @property
     def lower(self) -> NDArray[np.float64]:

@@ -41,6 +41,27 @@ class DenoiseMesh(unittest.TestCase):
                         0.3 * angles(noisy.points, clean.points, clean.triangles).mean())
         self.assertEqual(result.warnings, [])
 
+    def test_creases_and_the_limit_hold(self):
+        noisy, _ = noisy_sphere()
+        upper = noisy.points[noisy.triangles].mean(axis=1)[:, 2] > 0
+        sides = np.sort(np.concatenate([noisy.triangles[:, [a, b]] for a, b in ((0, 1), (1, 2), (2, 0))]), axis=1)
+        edges, inverse = np.unique(sides, axis=0, return_inverse=True)
+        count = np.bincount(inverse.ravel(), weights=np.tile(upper, 3))
+        rim = edges[count == 1]
+        marks = np.isin(np.arange(noisy.n_points), rim)
+        results = [sd.denoise_mesh(noisy, creases=creases).points for creases in (upper.astype(int), rim, marks)]
+        for points in results:
+            np.testing.assert_array_equal(points[marks], noisy.points[marks])
+        self.assertTrue((results[0][~marks] != noisy.points[~marks]).any(axis=1).all())
+        np.testing.assert_array_equal(results[1], results[2])
+        limited = sd.denoise_mesh(noisy, displacement_limit=0.005)
+        self.assertAlmostEqual(limited.maximum_displacement, 0.005, places=12)
+        self.assertIn("points move as far as displacement_limit allows", " ".join(limited.warnings))
+        held = sd.denoise_mesh(noisy, crease_angle=1e-6)
+        np.testing.assert_allclose(held.points, noisy.points, atol=1e-12)
+        with self.assertRaisesRegex(ValueError, "creases is .*; allowed: rows of points, 0 to"):
+            sd.denoise_mesh(noisy, creases=[[0, noisy.n_points]])
+
     def test_coarse_shapes_stay_and_the_line_names_the_level(self):
         corners = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
         squares = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]

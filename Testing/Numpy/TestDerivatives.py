@@ -100,6 +100,20 @@ class Derivatives(unittest.TestCase):
         np.testing.assert_array_equal(found.velocity, 0.0)
         np.testing.assert_array_equal(found.speed, 0.0)
 
+    def test_collisions_and_foci_are_marked(self):
+        x, y = (a.ravel() for a in np.meshgrid(np.arange(61.0), np.arange(61.0)))
+        corner = np.arange(61 * 61).reshape(61, 61)[:-1, :-1].ravel()
+        plane = sd.Surface(np.c_[x, y, 0.0 * x], np.vstack([np.c_[corner, corner + 1, corner + 62],
+                                                            np.c_[corner, corner + 62, corner + 61]]))
+        from_left, from_right = np.hypot(x - 10, y - 30), np.hypot(x - 50, y - 30)
+        found = sd.conduction_velocity(plane, np.minimum(from_left, from_right) / 0.6)
+        nearest = np.minimum(from_left, from_right)
+        self.assertTrue(found.focus[nearest == 0].all() and not found.focus[nearest > 4].any())
+        self.assertTrue(found.collision[x == 30].all() and not found.collision[(abs(x - 30) > 2)].any())
+        free = ~found.collision & ~found.focus
+        np.testing.assert_allclose(found.speed[free & (nearest > 4)], 0.6, rtol=0.03)
+        np.testing.assert_allclose(np.linalg.norm(found.direction, axis=1)[free], 1.0, atol=1e-9)
+
     def test_says_what_is_not_allowed(self):
         surface = plate()
         x = surface.points[:, 0]

@@ -115,6 +115,41 @@ class Weights(unittest.TestCase):
         self.assertEqual(some.number_of_values, 30)
 
 
+class WrongValues(unittest.TestCase):
+    def test_are_found_left_out_and_counted(self):
+        places = places_around(80)
+        values = field(places) + np.random.default_rng(0).normal(scale=0.02, size=80)
+        wrong = np.isin(np.arange(80), (7, 30, 61))
+        spoiled = values + 1.5 * wrong
+        plain, found = interpolate(BALL, spoiled, places)
+        self.assertRegex(found[0], r"^3 values are farther from the result than four standard deviations of the "
+                                   r"others \(to leave outliers out, turn robust on\)$")
+        result, found = interpolate(BALL, spoiled, places, robust=True, compute_error=True, leave_one_out=True)
+        self.assertEqual(found, ["3 values are contradicted by others and left out"])
+        np.testing.assert_array_equal(result.outliers, wrong)
+        without = sd.interpolate(BALL, values[~wrong], places[~wrong])
+        np.testing.assert_allclose(result.values, without.values, atol=1e-9)
+        self.assertGreater(np.abs(plain.values - without.values).max(), 0.1)
+        np.testing.assert_allclose(result.residuals[wrong], 1.5, atol=0.15)
+        residuals, errors = result.leave_one_out
+        self.assertTrue((np.abs(residuals[~wrong]) >= np.abs(result.residuals[~wrong])).all())
+        np.testing.assert_array_equal(np.isnan(errors), wrong)
+        np.testing.assert_allclose(result.upper - result.lower, 2 * 1.6449 * result.error, rtol=1e-4)
+
+    def test_rows_are_those_of_the_data(self):
+        data = sparse(9)
+        result = sd.interpolate(BALL, np.column_stack([data, 2 * data]), robust=True)
+        self.assertEqual(result.outliers.shape, (N, 2))
+        np.testing.assert_array_equal(np.isnan(result.residuals[:, 0]), np.isnan(data))
+        cells = sd.interpolate(BALL, np.where(np.arange(M) % 7 == 0, 1.0 + np.arange(M) % 2, np.nan), leave_one_out=True)
+        self.assertEqual(cells.leave_one_out.residuals.shape, (M,))
+
+    def test_distance_to_data_is_that_from_the_values(self):
+        places = places_around(20)
+        result = sd.interpolate(BALL, field(places), places)
+        np.testing.assert_array_equal(result.distance_to_data, sd.distance(BALL, places))
+
+
 class Boundary(unittest.TestCase):
     def test_a_planar_wave_has_its_velocity_up_to_the_boundary(self):
         x, y = (a.ravel() for a in np.meshgrid(np.linspace(0.0, 60.0, 41), np.linspace(0.0, 60.0, 41)))
@@ -133,6 +168,14 @@ class Boundary(unittest.TestCase):
             speed = sd.conduction_velocity(plane, result.values, smoothing_fwhm=8.0)[1]
             speeds[boundary] = speed[near].mean()
         self.assertAlmostEqual(speeds[None], 0.6, delta=0.012)
+        result = sd.interpolate(plane, times, places, compute_error=True)
+        found = sd.conduction_velocity(plane, result.values, error=result)
+        self.assertGreater(((found.speed_lower <= 0.6) & (0.6 <= found.speed_upper)).mean(), 0.9)
+        self.assertLess(np.median(found.speed_upper - found.speed_lower), 0.15)
+        with self.assertRaisesRegex(ValueError, "error has no errors of slopes; allowed: the result of interpolate"):
+            sd.conduction_velocity(plane, result.values, error=sd.interpolate(plane, times, places))
+        with self.assertRaisesRegex(ValueError, "error is given with smoothing_fwhm or result_on_faces"):
+            sd.conduction_velocity(plane, result.values, error=result, smoothing_fwhm=8.0)
         self.assertGreater(speeds["Natural"], 0.7)
 
     def test_automatic_is_natural_where_free_is_excluded(self):

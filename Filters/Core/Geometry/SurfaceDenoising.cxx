@@ -94,7 +94,7 @@ double TailOfDisplacements(const TriangleMesh& mesh, const Points& from, const P
     }
     distances.push_back(std::abs((to.row(i) - from.row(i)).dot(normal.stableNormalized())));
   }
-  return TailOfNormal(distances);
+  return distances.empty() ? 1.0 : TailOfNormal(distances);
 }
 
 /// The enclosed volume of each connected component; 0 unless it is closed and consistently oriented.
