@@ -57,7 +57,7 @@ def main(folder):
         module = load(folder, name)
         functions = [getattr(module, function) for function in module.__all__]
         results = {match for function in functions for match in re.findall(
-            r"\w+Result|ConductionVelocity|HelmholtzParts", inspect.signature(function).return_annotation)}
+            r"\w+Result|ConductionVelocity|HelmholtzParts", str(inspect.signature(function)))}
         lines = HEADER.format(results=", ".join(sorted(results)), functions=module.__all__).splitlines()
         for function in functions:
             lines += lines_of(function)
