@@ -417,13 +417,13 @@ inline std::vector<FilterKind> AllFilters()
       }),
     Slow(MakeKind<Spline>("InterpolationWeighted", "fInterpolated", 1,
       [](Spline* f) { SetInputArray(f, 5, "weights"); })),
-    MakeKind<Spline>("InterpolationRobust", "fInterpolated", 1,
+    Slow(MakeKind<Spline>("InterpolationRobust", "fInterpolated", 1,
       [](Spline* f)
       {
         SetInputArray(f, 1, "mask");
         f->RobustOn();
         f->LeaveOneOutOn();
-      }),
+      })),
     Slow(MakeKind<Spline>("InterpolationOfCells", "cInterpolated", 1,
       [](Spline* f) { SetInputArray(f, 0, "c", true); })),
     { "Denoising", [] { return vtkSmartPointer<vtkSurfaceDenoisingFilter>::New(); },

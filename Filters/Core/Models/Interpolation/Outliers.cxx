@@ -25,7 +25,7 @@ constexpr Quantile Upper = { 0.8, 1.2816 };
 constexpr double LeastShareOfRange = 0.02;
 /// Beyond so many deviations Huber's weights fall; they have 95 % of the efficiency of equal ones.
 constexpr double HuberDeviations = 1.345;
-constexpr int HuberSteps = 8;
+constexpr int HuberSteps = 5;
 constexpr int LargestNumberOfRounds = 20;
 constexpr Index FewestValues = 8;
 constexpr Index FewestToCount = 20;
@@ -159,7 +159,7 @@ std::vector<char> FindOutliers(const SmoothInterpolation& search, const Scattere
       weighted.Weights[i] =
         own.Weights[i] * (magnitudes[i] > bound ? std::max(NoWeight, bound / magnitudes[i]) : 1.0);
     }
-    if (!(sigma > 0.0) || std::abs(sigma - last) < 0.02 * sigma)
+    if (!(sigma > 0.0) || std::abs(sigma - last) < 0.05 * sigma)
     {
       break;
     }
