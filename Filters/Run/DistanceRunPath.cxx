@@ -190,6 +190,7 @@ SurfaceDisk DistanceRun::FindDisk(const BlockInput& input, Settings& given,
   for (const std::vector<MeshPlace>& curve : disk.Boundary())
   {
     std::vector<Eigen::RowVector3d> points;
+    points.reserve(curve.size());
     for (const MeshPlace& place : curve)
     {
       points.push_back(InSpace(surface, place.Triangle, place.At));

@@ -169,6 +169,7 @@ DistanceRun::SourceSet DistanceRun::FindClosedLines(
   for (const std::vector<Index>& line : OrderClosedLines(shapes))
   {
     std::vector<SurfacePlace> places;
+    places.reserve(line.size());
     for (const Index row : line)
     {
       places.push_back(

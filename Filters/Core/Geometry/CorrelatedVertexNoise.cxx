@@ -84,6 +84,7 @@ CorrelationFit FitWithLength(
 std::vector<double> SigmasOf(const std::vector<Deviation>& deviations, double h)
 {
   std::vector<double> sigmas;
+  sigmas.reserve(deviations.size());
   for (const Deviation& deviation : deviations)
   {
     sigmas.push_back(deviation.Sigma / h);

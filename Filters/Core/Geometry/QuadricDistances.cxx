@@ -214,6 +214,7 @@ std::vector<std::vector<QuadricDistance>> MeasureDistances(const TriangleMesh& m
 std::vector<double> Standardized(const std::vector<QuadricDistance>& distances)
 {
   std::vector<double> values;
+  values.reserve(distances.size());
   for (const QuadricDistance& distance : distances)
   {
     values.push_back(distance.Standardized);

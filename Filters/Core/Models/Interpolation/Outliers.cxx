@@ -108,6 +108,7 @@ Index CountOutliers(const ScatteredValues& data, const Values& residuals, Eigen:
     return 0;
   }
   std::vector<double> magnitudes;
+  magnitudes.reserve(static_cast<std::size_t>(count));
   for (Index i = 0; i < count; ++i)
   {
     magnitudes.push_back(std::abs(residuals(i, column)) * std::sqrt(data.Weights[i]));
