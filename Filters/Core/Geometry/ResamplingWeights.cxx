@@ -56,7 +56,8 @@ RowMatrix BarycentricWeights(const Points& target, const Points& source, const T
       [&](Index i)
       {
         const NearestPoint found = nearest.Find(target.row(first + i));
-        std::array<Entry, 3>& row = rows[static_cast<std::size_t>(first) + static_cast<std::size_t>(i)];
+        std::array<Entry, 3>& row =
+          rows[static_cast<std::size_t>(first) + static_cast<std::size_t>(i)];
         for (std::size_t a = 0; a < 3 && found.Triangle >= 0; ++a)
         {
           row[a] = { faces(found.Triangle, static_cast<Eigen::Index>(a)), found.Coordinates[a] };
