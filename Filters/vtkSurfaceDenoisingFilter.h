@@ -96,7 +96,7 @@ public:
   /**
    * Over how many edges points share their noise: the standard deviation, in mean edge lengths, of the
    * kernel that makes such noise of independent noise. 0 or more; below 0.5 the noise is independent.
-   * Default: 0, which means measured, as far as correlated noise can be told from relief: up to about
+   * Default: 0, which means measured, as far as correlated noise differs from relief: up to about
    * 3. With a length and without NoiseLevel, the level is measured for this length.
    */
   SURFACEDIFFUSION_PROPERTY(NoiseLength, double);

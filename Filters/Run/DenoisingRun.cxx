@@ -83,7 +83,7 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
       "Over how many edges points share their noise, as those of depth cameras do: the "
       "standard deviation, in units of the mean edge length, of the kernel that makes "
       "such noise of independent noise. Below 0.5 the noise is independent. 0: measured, "
-      "as far as noise can be told from relief." },
+      "as far as it can be distinguished from relief." },
     this->NoiseLength, SettingRange::NonNegative());
   visitor.Choice({ "SurfaceType", "",
                    "CAD: smooth faces, which may meet in sharp edges. Organic: shapes with details "
@@ -93,11 +93,9 @@ void DenoisingRunSettings::Visit(SettingVisitor& visitor)
   visitor.Number(
     { "CreaseAngle", "degrees",
       "Edges between triangles whose normals differ by this angle and more, in degrees, are "
-      "creases: "
-      "they stay as they are, and the two sides are smoothed apart. On surfaces with strong "
-      "noise this is so at every edge. 0: none are held; sharp edges are found and kept while "
-      "noise is "
-      "removed from them, too." },
+      "creases: they stay as they are, and the two sides are smoothed apart. On surfaces with "
+      "strong noise this is so at every edge. 0: none are held; sharp edges are found and kept "
+      "while noise is removed from them, too." },
     this->CreaseAngle, SettingRange::Between(0.0, 180.0, "0 to 180"));
   visitor.Number(
     { "DisplacementLimit", "coordinates",

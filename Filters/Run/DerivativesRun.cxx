@@ -225,11 +225,7 @@ void DerivativesRun::Update(
       default:
       {
         const Values ofTriangles = operators.Gradients(u) / unit;
-        Values gradients = ofTriangles;
-        if (!settings.ResultOnCells)
-        {
-          gradients = operators.ToVertices(gradients);
-        }
+        Values gradients = settings.ResultOnCells ? ofTriangles : operators.ToVertices(ofTriangles);
         if (settings.Quantity == DerivativeQuantity::Gradient)
         {
           this->Add("Gradient", std::move(gradients), settings.ResultOnCells);

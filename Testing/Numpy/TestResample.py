@@ -199,11 +199,11 @@ class Errors(unittest.TestCase):
                     other = resample(source, ball, np.vstack([values, [[7] * 4, [8] * 4]]), method)
                     np.testing.assert_array_equal(other, resample(FINE, ball, values, method))
 
-    def test_progress_is_told_and_its_exception_ends_the_search(self):
-        told = []
-        Resampler(sphere(6), sphere(7), progress=told.append)
-        self.assertEqual((told, told[-1]), (sorted(told), 1.0))
-        self.assertGreater(len(told), 2)
+    def test_progress_is_reported_and_its_exception_ends_the_search(self):
+        fractions = []
+        Resampler(sphere(6), sphere(7), progress=fractions.append)
+        self.assertEqual((fractions, fractions[-1]), (sorted(fractions), 1.0))
+        self.assertGreater(len(fractions), 2)
 
         def stop(fraction):
             raise KeyboardInterrupt

@@ -535,6 +535,12 @@ inline std::vector<FilterKind> AllFilters()
         f->SetMethodToEikonal();
         SetInputArray(f, 0, "sources");
       }),
+    MakeKind<vtkSurfaceDistanceFilter>("DistanceSigned", "Distance", 0,
+      [](vtkSurfaceDistanceFilter* f)
+      {
+        f->SignedOn();
+        SetInputArray(f, 0, "sources");
+      }),
     MakeKind<vtkSurfaceDistanceFilter>("ArrivalTime", "ArrivalTime", 0,
       [](vtkSurfaceDistanceFilter* f)
       {

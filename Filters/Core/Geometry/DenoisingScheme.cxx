@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/DenoisingScheme.h"
 
+#include "Core/Foundation/Quantile.h"
 #include "Core/Geometry/DisplacementStatistics.h"
 #include "Core/Geometry/FaceFlips.h"
 #include "Core/Geometry/LinearNormals.h"
 #include "Core/Geometry/NormalFit.h"
 #include "Core/Geometry/NormalVariation.h"
-#include "Core/Geometry/QuadricDistances.h"
 
 #include <algorithm>
 #include <cmath>

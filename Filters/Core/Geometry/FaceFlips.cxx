@@ -3,7 +3,7 @@
 #include "Core/Geometry/FaceFlips.h"
 
 #include "Core/Foundation/IndexLists.h"
-#include "Core/Geometry/QuadricDistances.h"
+#include "Core/Foundation/Quantile.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/QuadricDistances.h"
 
+#include "Core/Foundation/Quantile.h"
 #include "Core/Geometry/VertexFans.h"
 
 #include <Eigen/Cholesky>
@@ -149,18 +150,6 @@ QuadricDistance DistanceFromQuadric(
   return result;
 }
 } // namespace
-
-double QuantileOf(std::vector<double>& values, double fraction)
-{
-  if (values.empty())
-  {
-    return 0.0;
-  }
-  const double place = fraction * static_cast<double>(values.size());
-  const auto quantile = values.begin() + static_cast<std::ptrdiff_t>(place);
-  std::nth_element(values.begin(), quantile, values.end());
-  return *quantile;
-}
 
 double TailOfNormal(std::vector<double>& values)
 {

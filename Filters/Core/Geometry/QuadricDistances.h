@@ -9,9 +9,6 @@
 namespace SurfaceDiffusion
 {
 
-/// The value below which this fraction of them, below 1, is; 0 without values. Reorders them.
-double QuantileOf(std::vector<double>& values, double fraction);
-
 /// The deviation of normally distributed numbers whose absolute values these are by their 0.95 quantile,
 /// over that by their 0.3 quantile; infinite if the latter is 0. Reorders them.
 double TailOfNormal(std::vector<double>& values);
@@ -41,7 +38,7 @@ Deviation DeviationOf(std::vector<double>& distances);
 /// Every so many vertices are used to have about `enough` of them.
 Index StrideFor(const TriangleMesh& mesh, Index enough);
 
-/// That many vertices tell what many rings of neighbours around each are to be for.
+/// The number of vertices that suffices where many rings of neighbours are measured around each.
 constexpr Index EnoughWideNeighbourhoods = 1000;
 
 /// Per number of rings of neighbours, ascending, of every vertex with the stride.

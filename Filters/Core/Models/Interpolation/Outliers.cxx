@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/Outliers.h"
 
+#include "Core/Foundation/Quantile.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -32,18 +34,11 @@ constexpr Index FewestToCount = 20;
 /// Of the weight of an outlier, which leaves it without influence, and its leverage known.
 constexpr double NoWeight = 1e-6;
 
-double DeviationBy(const Quantile& quantile, std::vector<double>& magnitudes)
-{
-  const double place = quantile.Fraction * static_cast<double>(magnitudes.size());
-  const auto at = magnitudes.begin() + static_cast<std::ptrdiff_t>(place);
-  std::nth_element(magnitudes.begin(), at, magnitudes.end());
-  return *at / quantile.Deviations;
-}
-
 double DeviationOf(std::vector<double> magnitudes)
 {
 
-  return std::max(DeviationBy(Median, magnitudes), DeviationBy(Upper, magnitudes));
+  return std::max(QuantileOf(magnitudes, Median.Fraction) / Median.Deviations,
+    QuantileOf(magnitudes, Upper.Fraction) / Upper.Deviations);
 }
 
 /// From the tenth to the ninetieth percentile.
@@ -85,19 +80,7 @@ Standardized Standardize(
 
 Values ResidualsOf(const ScatteredValues& data, const Values& u)
 {
-  Values residuals = data.Given;
-  for (Index i = 0; i < data.Count(); ++i)
-  {
-    const SurfacePoint& place = data.Places[static_cast<std::size_t>(i)];
-    for (std::size_t a = 0; a < 3; ++a)
-    {
-      if (place.Coordinates[a] != 0.0)
-      {
-        residuals.row(i) -= place.Coordinates[a] * u.row(place.Vertices[a]);
-      }
-    }
-  }
-  return residuals;
+  return data.Given - data.AtPlaces(u);
 }
 
 Index CountOutliers(const ScatteredValues& data, const Values& residuals, Eigen::Index column)

@@ -163,6 +163,23 @@ ScatteredValues ScatteredValues::AtVertices(const Values& f, const Flags& known)
   return data;
 }
 
+Values ScatteredValues::AtPlaces(const Values& u) const
+{
+  Values values = Values::Zero(this->Count(), u.cols());
+  for (Index i = 0; i < this->Count(); ++i)
+  {
+    const SurfacePoint& place = this->Places[i];
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      if (place.Coordinates[a] != 0.0)
+      {
+        values.row(i) += place.Coordinates[a] * u.row(place.Vertices[a]);
+      }
+    }
+  }
+  return values;
+}
+
 MergedValues::MergedValues(const ScatteredValues& given)
 {
   const Index count = given.Count();

@@ -31,6 +31,9 @@ struct ScatteredValues
 
   Index Count() const { return static_cast<Index>(this->Places.size()); }
 
+  /// u at the places, d x k, of a function with values at the vertices.
+  Values AtPlaces(const Values& u) const;
+
   /// The values at vertices where `known` says so, with weights 1.
   static ScatteredValues AtVertices(const Values& f, const Flags& known);
 };

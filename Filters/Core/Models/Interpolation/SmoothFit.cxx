@@ -101,19 +101,7 @@ void SmoothFit::Restore()
 
 Values SmoothFit::AtPoints(const Values& u) const
 {
-  Values values = Values::Zero(this->Data.Count(), u.cols());
-  for (Index i = 0; i < this->Data.Count(); ++i)
-  {
-    const SurfacePoint& place = this->Data.Places[i];
-    for (std::size_t a = 0; a < 3; ++a)
-    {
-      if (place.Coordinates[a] != 0.0)
-      {
-        values.row(i) += place.Coordinates[a] * u.row(place.Vertices[a]);
-      }
-    }
-  }
-  return values;
+  return this->Data.AtPlaces(u);
 }
 
 Values SmoothFit::ToVertices(const Values& v) const
