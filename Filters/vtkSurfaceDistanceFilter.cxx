@@ -5,13 +5,17 @@
 #include "Conversion/FieldReader.h"
 #include "Conversion/InputArrays.h"
 #include "Conversion/PointInput.h"
+#include "Conversion/ResultWriter.h"
 #include "Conversion/SourceInput.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DistanceRun.h"
 #include "Run/InputSentences.h"
 #include "Run/OwnedSettings.h"
 
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
 
 using namespace SurfaceDiffusion;
 
@@ -24,7 +28,8 @@ vtkSurfaceDistanceFilter::vtkSurfaceDistanceFilter()
   this->DeclareNumber("NumberOfSources");
   this->DeclareNumber("NumberOfUnreachedPoints");
   this->DeclareNumber("EffectiveMethod");
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(2);
 }
 
 vtkSurfaceDistanceFilter::~vtkSurfaceDistanceFilter() = default;
@@ -39,18 +44,37 @@ int vtkSurfaceDistanceFilter::FillInputPortInformation(int port, vtkInformation*
   return 1;
 }
 
+int vtkSurfaceDistanceFilter::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  // The executive makes the object of port 1, and RequestDataObject() that of port 0.
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkDataObject" : "vtkPolyData");
+  return 1;
+}
+
 int vtkSurfaceDistanceFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkDataObject* const sources = FindSecondInput(inputs);
-  this->HasSources = sources != nullptr;
   this->ProblemsOfSources.clear();
-  if (sources)
+  const auto read = [&](int port, const char* name, std::shared_ptr<const SourceShapes>& shapes)
   {
-    this->Sources = ReadSources(sources, this->GetController(), this->ProblemsOfSources);
-  }
+    vtkDataObject* const points = FindOptionalInput(inputs, port);
+    shapes =
+      points ? ReadSources(points, name, this->GetController(), this->ProblemsOfSources) : nullptr;
+    return points != nullptr;
+  };
+  this->HasSources = read(1, "the second input, the sources", this->Sources);
+  read(2, "the third input, the path points", this->PathPoints);
+  vtkPolyData* const paths = vtkPolyData::GetData(outputs, 1);
+  paths->Initialize();
+  this->Paths = nullptr;
   const int result = this->Superclass::RequestData(request, inputs, outputs);
+  if (this->Paths && result != 0 && this->GetErrorCode() == 0)
+  {
+    paths->ShallowCopy(this->Paths);
+  }
+  this->Paths = nullptr;
   this->Sources.reset();
+  this->PathPoints.reset();
   return result;
 }
 
@@ -60,6 +84,7 @@ bool vtkSurfaceDistanceFilter::FindFields(
   const InputArrays inputs(this, block, fields, problems);
   problems.insert(problems.end(), this->ProblemsOfSources.begin(), this->ProblemsOfSources.end());
   fields.Sources = this->Sources;
+  fields.PathPoints = this->PathPoints;
   if (!this->HasSources)
   {
     fields.Data = inputs.Find(0, "SourceArray", 1);
@@ -84,10 +109,17 @@ void vtkSurfaceDistanceFilter::PrepareOutputs(
   const std::vector<SurfaceBlock>& surfaces, const SurfaceRuns& runs)
 {
   std::vector<const DistanceRun*> updated;
+  std::vector<const OutputList*> results;
   for (std::size_t b = 0; b < surfaces.size(); ++b)
   {
     updated.push_back(static_cast<const DistanceRun*>(&runs.RunOf(b)));
+    results.push_back(&updated.back()->Outputs());
   }
   DistanceRun::RequireSource(updated);
+  if (this->PathPoints)
+  {
+    this->Paths = vtkSmartPointer<vtkPolyData>::New();
+    WriteCurves(results, this->ResultArrayName, this->Paths);
+  }
 }
 VTK_ABI_NAMESPACE_END

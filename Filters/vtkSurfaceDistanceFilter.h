@@ -17,6 +17,13 @@
  *   points and lines, and lines with a hidden point, take no part; or
  * - without an input on port 1, the points at which input array 0 is not 0.
  *
+ * **Paths.** From the places nearest to the points of a vtkPointSet on input port 2, output port 1 has
+ * the shortest paths to their nearest source, as polylines: straight in each triangle and over edges,
+ * as long as the distance of Method Exact, whichever the method is. Its cell arrays are `Length`, in
+ * coordinate units, `PathPoint`, the number of the point on port 2, `NearestSource`, and `Block`. A
+ * warning counts points that no path leads from. Not with speeds and start times. The time is that of
+ * the exact distances of the whole surface.
+ *
  * `NearestSource` is the value of array 0 at the nearest source, or on port 1 the number of
  * the point, of a line the smallest of its points. Points that no way reaches have 0, or -1.
  *
@@ -67,14 +74,16 @@
  *
  * ResultArrayName, if it is not empty, is the prefix of the names of these arrays. With composite
  * data each block is a surface of its own, which takes the sources of its own array, or all those
- * of port 1. Surfaces in pieces, over processes and partitions, are gathered and solved in process
- * 0, with the points of port 1 of all processes; see vtkSurfaceFilter.
+ * of port 1, and all points of port 2. Surfaces in pieces, over processes and partitions, are gathered
+ * and solved in process 0, which has the paths, with the points of ports 1 and 2 of all processes; see
+ * vtkSurfaceFilter.
  *
  * @sa vtkSurfaceInterpolationFilter vtkSurfaceDerivativesFilter vtkDijkstraGraphGeodesicPath
  */
 #ifndef vtkSurfaceDistanceFilter_h
 #define vtkSurfaceDistanceFilter_h
 
+#include "vtkSmartPointer.h" // for paths
 #include "vtkSurfaceRunAlgorithm.h"
 
 namespace SurfaceDiffusion
@@ -164,6 +173,7 @@ protected:
     const std::vector<SurfaceBlock>& surfaces, const SurfaceDiffusion::SurfaceRuns& runs) override;
   std::vector<int> ArraysOfMarks() const override { return { 0, 3, 6 }; }
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
@@ -172,7 +182,8 @@ private:
 
   // Of one update:
   bool HasSources = false; ///< there is a second input
-  std::shared_ptr<const SurfaceDiffusion::SourceShapes> Sources;
+  std::shared_ptr<const SurfaceDiffusion::SourceShapes> Sources, PathPoints;
+  vtkSmartPointer<vtkPolyData> Paths;
   Problems ProblemsOfSources;
 };
 VTK_ABI_NAMESPACE_END

@@ -42,7 +42,7 @@ int vtkSurfaceInterpolationFilter::FillInputPortInformation(int port, vtkInforma
 int vtkSurfaceInterpolationFilter::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkDataObject* const points = FindSecondInput(inputs);
+  vtkDataObject* const points = FindOptionalInput(inputs, 1);
   this->HasPoints = points != nullptr;
   this->ProblemsOfPoints.clear();
   if (points)

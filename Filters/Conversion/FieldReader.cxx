@@ -98,6 +98,7 @@ FieldSummary InputFields::Summarize() const
   summary.Rates = this->Rates != nullptr;
   summary.DataAreTerms = this->DataAreTerms;
   summary.Sources = this->Sources != nullptr;
+  summary.PathPoints = this->PathPoints != nullptr;
   summary.Speeds = this->Speeds.Values != nullptr;
   summary.StartTimes = this->StartTimes.Values != nullptr;
   return summary;
@@ -160,9 +161,13 @@ Fingerprint FingerprintFields(const InputFields& arrays)
   {
     AddSamples(fingerprint, *arrays.Samples);
   }
-  if (arrays.Sources)
+  for (const SourceShapes* const shapes : { arrays.Sources.get(), arrays.PathPoints.get() })
   {
-    AddSources(fingerprint, *arrays.Sources);
+    fingerprint.AddNumber(std::uint64_t{ shapes ? 1u : 0u });
+    if (shapes)
+    {
+      AddSources(fingerprint, *shapes);
+    }
   }
   fingerprint.AddNumber(std::uint64_t{ arrays.DataAreTerms ? 1u : 0u });
   return fingerprint;
@@ -186,6 +191,7 @@ Fields ReadFields(const InputFields& arrays, const TriangleCells& cells)
   fields.Seeds = AsLabels({ ReadFactors(arrays.Seeds.Values), arrays.Seeds.OnCells },
     NamedArray(arrays.NameOfSeeds, arrays.Seeds.Values));
   fields.Sources = arrays.Sources;
+  fields.PathPoints = arrays.PathPoints;
   fields.Speeds = { ReadFactors(arrays.Speeds.Values), arrays.Speeds.OnCells };
   fields.StartTimes = ReadFactors(arrays.StartTimes.Values);
   fields.Between = ReadFlags(arrays.Between);

@@ -54,6 +54,7 @@ struct InputFields
   bool DataAreTerms = false; ///< Data is index 7
   std::shared_ptr<const PointSamples> Samples; ///< in place of Data
   std::shared_ptr<const SourceShapes> Sources; ///< in place of Data
+  std::shared_ptr<const SourceShapes> PathPoints; ///< of distances
   LocatedArray Speeds; ///< index 8
   LocatedArray StartTimes; ///< index 9, on points
   vtkDataArray* GlobalIds = nullptr; ///< of the points

@@ -97,10 +97,10 @@ void DescribePointPort(vtkInformation* info)
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
 }
 
-vtkDataObject* FindSecondInput(vtkInformationVector** inputs)
+vtkDataObject* FindOptionalInput(vtkInformationVector** inputs, int port)
 {
-  return inputs[1]->GetNumberOfInformationObjects() > 0 ? vtkDataObject::GetData(inputs[1])
-                                                        : nullptr;
+  return inputs[port]->GetNumberOfInformationObjects() > 0 ? vtkDataObject::GetData(inputs[port])
+                                                           : nullptr;
 }
 
 Points ReadPlaces(vtkPointSet* points)
@@ -132,8 +132,8 @@ std::shared_ptr<const PointSamples> ReadPointSamples(vtkDataObject* data,
   }
   else if (isEmpty)
   {
-    problems.push_back(Say(
-      hidden.empty() ? "NoPoints" : "HiddenPoints", "the points with values", hidden.size(), ""));
+    problems.push_back(Say(hidden.empty() ? "NoPoints" : "HiddenPoints",
+      "the second input, the points with values", hidden.size(), ""));
   }
   // A process without points need not have the arrays of the others.
   else if (points->GetNumberOfPoints() > 0)

@@ -25,8 +25,8 @@ namespace SurfaceDiffusion
 /// whose message says what to do.
 void DescribePointPort(vtkInformation* info);
 
-/// The data on port 1; null without any.
-vtkDataObject* FindSecondInput(vtkInformationVector** inputs);
+/// The data on a port; null without any.
+vtkDataObject* FindOptionalInput(vtkInformationVector** inputs, int port);
 
 /// The coordinates of all points.
 Points ReadPlaces(vtkPointSet* points);

@@ -70,14 +70,13 @@ std::vector<int> ReadSegments(vtkPointSet* points, std::vector<char>& hidden)
 } // namespace
 
 std::shared_ptr<const SourceShapes> ReadSources(
-  vtkDataObject* data, vtkMultiProcessController* controller, Problems& problems)
+  vtkDataObject* data, const char* name, vtkMultiProcessController* controller, Problems& problems)
 {
   const Processes processes(controller);
   vtkPointSet* const points = vtkPointSet::SafeDownCast(data);
   if (processes.Any(!points))
   {
-    problems.push_back(
-      Say("NoPointSet", "the second input, the sources, is", data->GetClassName()));
+    problems.push_back(Say("NoPointSet", std::string(name) + ", is", data->GetClassName()));
     return nullptr;
   }
   auto sources = std::make_shared<SourceShapes>();
@@ -108,8 +107,8 @@ std::shared_ptr<const SourceShapes> ReadSources(
   const std::vector<char>& hidden = sources->Hidden;
   if (std::count(hidden.begin(), hidden.end(), 0) == 0)
   {
-    problems.push_back(Say(hidden.empty() ? "NoPoints" : "HiddenPoints", "the sources",
-      hidden.size(), " points or lines"));
+    problems.push_back(
+      Say(hidden.empty() ? "NoPoints" : "HiddenPoints", name, hidden.size(), " points or lines"));
     return nullptr;
   }
   for (std::size_t k = 0; k + 1 < ends.size(); k += 2)

@@ -19,9 +19,9 @@ namespace SurfaceDiffusion
 
 /// The points and lines of a vtkPointSet, those of all processes together. Hidden points and lines
 /// take no part, nor do lines with a hidden point. Null, with a problem, if the data are of another
-/// type or have no points that take part. Collective.
+/// type or have no points that take part. name: of the input, for problems. Collective.
 std::shared_ptr<const SourceShapes> ReadSources(
-  vtkDataObject* data, vtkMultiProcessController* controller, Problems& problems);
+  vtkDataObject* data, const char* name, vtkMultiProcessController* controller, Problems& problems);
 
 /// Add the hash of everything in it.
 void AddSources(Fingerprint& fingerprint, const SourceShapes& sources);

@@ -78,9 +78,16 @@ void DistanceSettings::Check(const FieldSummary* fields, Problems& problems)
     Sentence(Word::Setting("AlongSpeed"))
       << " " << this->AlongSpeed << " and " << Word::Setting("AcrossSpeed") << " "
       << this->AcrossSpeed);
-  Require(!this->Signed || !(fields->Speeds || fields->StartTimes || this->HasSpeed()),
-    Sentence(Word::Setting("Signed")), Word::SwitchNumber(this->Signed),
+  const bool areTimes = fields->Speeds || fields->StartTimes || this->HasSpeed();
+  Require(!this->Signed || !areTimes, Sentence(Word::Setting("Signed")),
+    Word::SwitchNumber(this->Signed),
     Sentence(Word::SwitchNumber(false)) << " together with speeds and start times", problems);
+  if (fields->PathPoints && areTimes)
+  {
+    problems.push_back(
+      Sentence("the path points are set together with speeds or start times; "
+               "allowed: path points with distances, whose paths are the shortest"));
+  }
   RequireDirections(
     *fields, "AlongSpeed", this->AlongSpeed, "AcrossSpeed", this->AcrossSpeed, problems);
 }
@@ -155,6 +162,14 @@ bool DistanceRun::SourceSet::HaveOneName() const
 {
   return std::all_of(this->Names.begin(), this->Names.end(),
     [this](double name) { return name == this->Names.front(); });
+}
+
+OutputType DistanceRun::SourceSet::TypeOfNames() const
+{
+  const bool areIntegers = std::all_of(this->Names.begin(), this->Names.end(),
+    [](double name)
+    { return name == std::floor(name) && std::abs(name) <= std::numeric_limits<int>::max(); });
+  return areIntegers ? OutputType::Integer : OutputType::Double;
 }
 
 /// Times per vertex, and the piece of a source that each comes from.
@@ -265,7 +280,8 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
     !fields.StartTimes.empty() || (fields.Sources && !fields.Sources->StartTimes.empty());
   const bool areTimes = haveStarts || !fields.Speeds.Values.empty() || settings.HasSpeed();
   const DistanceMethod method = this->FindMethod(settings.Method, areTimes, 1.0);
-  GeodesicDistance::Arrival arrival = this->Solve(sources, method, progress.Part(0.3, 0.95));
+  const double solved = fields.PathPoints ? 0.6 : 0.95;
+  GeodesicDistance::Arrival arrival = this->Solve(sources, method, progress.Part(0.3, solved));
   for (std::size_t i = 0; i < sources.Inside.size(); ++i)
   {
     const bool isInside = sources.Inside[i] && arrival.Times[i] < Never && arrival.Times[i] > 0.0;
@@ -276,9 +292,7 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
   Values times(n, 1);
   Values nearest(n, 1);
   const double none = sources.AreShapes ? -1.0 : 0.0;
-  const bool areIntegers = std::all_of(sources.Names.begin(), sources.Names.end(),
-    [](double name)
-    { return name == std::floor(name) && std::abs(name) <= std::numeric_limits<int>::max(); });
+  const OutputType typeOfNames = sources.TypeOfNames();
   Index unreached = 0;
   for (Index i = 0; i < n; ++i)
   {
@@ -297,8 +311,7 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
   add(areTimes ? "ArrivalTime" : "Distance", OutputType::Double, std::move(times), Never);
   this->Results.back().Active = Role::Scalars;
   this->Results.back().MayBeInfinite = true;
-  add("NearestSource", areIntegers ? OutputType::Integer : OutputType::Double, std::move(nearest),
-    none);
+  add("NearestSource", typeOfNames, std::move(nearest), none);
   if (settings.ComputeGradient)
   {
     add(areTimes ? "ArrivalTimeGradient" : "DistanceGradient", OutputType::Double,
@@ -312,6 +325,11 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
     Output::OfNumber("NumberOfUnreachedPoints", unreached, Combination::Sum, OutputType::Integer));
   this->Results.push_back(Output::OfNumber(
     "EffectiveMethod", static_cast<double>(method), Combination::Smallest, OutputType::Integer));
+  this->OfPaths = {};
+  if (fields.PathPoints)
+  {
+    this->AddPaths(drawn, *fields.PathPoints, sources, progress.Part(solved, 0.95));
+  }
   sources.Pieces = {};
   sources.Starts = {};
   sources.Names = {};
@@ -393,6 +411,10 @@ std::vector<Warning> DistanceRun::FindOwnWarnings() const
   if (!this->Found.Farness.Words().empty())
   {
     warnings.push_back({ this->Found.Farness, inputs });
+  }
+  if (!this->OfPaths.Words().empty())
+  {
+    warnings.push_back({ this->OfPaths, inputs });
   }
   if (this->AllAreSources && !this->Found.AreShapes)
   {

@@ -79,8 +79,8 @@ public:
   {
   }
 
-  /// Data, with a row per point, or Sources, and Speeds and StartTimes of the fields are read. A
-  /// surface without source has infinite distances.
+  /// Data, with a row per point, or Sources, and Speeds, StartTimes and PathPoints of the fields are
+  /// read. A surface without source has infinite distances.
   void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
   bool ExcludesMasked() const override { return true; }
 
@@ -128,6 +128,7 @@ private:
     Sentence Farness; ///< of shapes: a warning, or empty
 
     bool HaveOneName() const;
+    OutputType TypeOfNames() const;
   };
 
   std::vector<Warning> FindOwnWarnings() const override;
@@ -137,10 +138,12 @@ private:
   void TakeSpeeds(const Fields& fields, const DistanceSettings& settings);
   SourceSet FindSources(const BlockInput& input, const Fields& fields, double maximumDistance,
     const ProgressMonitor& progress);
+  void AddPaths(const BlockInput& drawn, const SourceShapes& from, const SourceSet& sources,
+    const ProgressMonitor& progress);
   SourceSet FindMarked(const Fields& fields) const;
   SourceSet FindPlaced(const SourceShapes& shapes) const;
   SourceSet FindProjected(const BlockInput& input, const SourceShapes& shapes,
-    double maximumDistance, const ProgressMonitor& progress);
+    double maximumDistance, bool arePathPoints, const ProgressMonitor& progress);
   SourceSet FindSigned(
     const BlockInput& drawn, const Fields& fields, const ProgressMonitor& progress);
   SourceSet FindClosedLines(
@@ -166,6 +169,7 @@ private:
   Values FindGradient(const std::vector<double>& times) const;
 
   SourceSet Found; ///< without its pieces
+  Sentence OfPaths; ///< a warning, or empty
   bool AllAreSources = false;
   /// Of the mesh and the speeds, kept for other sources.
   std::shared_ptr<const TriangleMesh> MeshOfSolvers;

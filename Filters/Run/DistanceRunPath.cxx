@@ -176,6 +176,71 @@ SurfacePath DistanceRun::FindPath(const BlockInput& input, Settings& given,
   return path;
 }
 
+/// The paths from places nearest to points to the nearest source.
+void DistanceRun::AddPaths(const BlockInput& drawn, const SourceShapes& from,
+  const SourceSet& sources, const ProgressMonitor& progress)
+{
+  const Surface& surface = *this->Domain;
+  const double unit = this->MeshOfSolvers->LengthUnit();
+  SourceShapes points = from;
+  points.Segments.clear();
+  points.Name = "the path points";
+  SourceSet starts = this->FindProjected(drawn, points, 0.0, true, progress.Part(0.0, 0.1));
+  std::vector<MeshPlace> places;
+  for (const SourcePiece& piece : starts.Pieces)
+  {
+    places.push_back({ piece.Triangle, piece.From });
+  }
+  GeodesicPath finder(*this->MeshOfSolvers, this->TakeExact().GetFrames());
+  const std::vector<GeodesicPath::Path> paths =
+    finder.FindAll(places, sources.Pieces, progress.Part(0.1, 1.0));
+  Curves curves;
+  std::vector<Eigen::RowVector3d> corners;
+  std::vector<double> lengths, numbers, names;
+  for (std::size_t k = 0; k < paths.size(); ++k)
+  {
+    if (!paths[k].IsFollowed)
+    {
+      continue;
+    }
+    corners.push_back(InSpace(surface, places[k].Triangle, places[k].At));
+    for (const PathSegment& segment : paths[k].Segments)
+    {
+      corners.push_back(InSpace(surface, segment.Triangle, segment.To));
+    }
+    lengths.push_back(paths[k].Length * unit);
+    numbers.push_back(starts.Names[k]);
+    names.push_back(sources.Names[static_cast<std::size_t>(paths[k].Piece)]);
+    while (curves.Corners.size() < corners.size())
+    {
+      curves.Corners.push_back(static_cast<Index>(curves.Corners.size()));
+    }
+    curves.Begin.push_back(static_cast<Index>(corners.size()));
+  }
+  const auto without = starts.Given - static_cast<Index>(lengths.size());
+  if (without > 0)
+  {
+    this->OfPaths
+      << without
+      << " path points have no path: no source is on their part of the surface, or they "
+         "are on no triangle that takes part";
+  }
+  else if (!starts.Farness.Words().empty())
+  {
+    this->OfPaths = starts.Farness;
+  }
+  curves.Points = AsPoints(corners);
+  this->Results.push_back(Output::OfCurves("Paths", std::move(curves)));
+  const auto add = [this](const char* name, OutputType type, const std::vector<double>& values)
+  {
+    this->Results.push_back({ name, Place::PerCurve, type,
+      Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size())) });
+  };
+  add("Length", OutputType::Double, lengths);
+  add("PathPoint", OutputType::Integer, numbers);
+  add("NearestSource", sources.TypeOfNames(), names);
+}
+
 SurfaceDisk DistanceRun::FindDisk(const BlockInput& input, Settings& given,
   const SurfacePlace& center, double radius, const ProgressMonitor& progress)
 {

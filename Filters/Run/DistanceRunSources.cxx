@@ -257,7 +257,8 @@ DistanceRun::SourceSet DistanceRun::FindPlaced(const SourceShapes& shapes) const
 }
 
 DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
-  const SourceShapes& shapes, double maximumDistance, const ProgressMonitor& progress)
+  const SourceShapes& shapes, double maximumDistance, bool arePathPoints,
+  const ProgressMonitor& progress)
 {
   const Surface& surface = *this->Domain;
   if (!this->Projection)
@@ -274,7 +275,8 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
   set.Given = found.Count + found.TooFar + found.Outside;
   if (maximumDistance == 0.0)
   {
-    set.Farness = DescribeFarPoints("of the sources", found.Places, found.Distances, surface);
+    set.Farness = DescribeFarPoints((std::string("of ") + shapes.Name).c_str(), found.Places,
+      found.Distances, surface, !arePathPoints);
   }
   for (const SourcePiece& piece : found.Pieces)
   {
@@ -295,7 +297,7 @@ DistanceRun::SourceSet DistanceRun::FindSources(const BlockInput& input, const F
   const SourceShapes* const shapes = fields.Sources.get();
   if (shapes && shapes->OfPoints.empty() && shapes->OfTriangles.empty())
   {
-    return this->FindProjected(input, *shapes, maximumDistance, progress);
+    return this->FindProjected(input, *shapes, maximumDistance, false, progress);
   }
   SourceSet set = shapes ? this->FindPlaced(*shapes) : this->FindMarked(fields);
   if (!this->Shapes.empty())

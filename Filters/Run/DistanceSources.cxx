@@ -96,7 +96,7 @@ ProjectedSources SourceProjection::Project(const SourceShapes& shapes, double ma
     if (!IsSet(shapes.Hidden, static_cast<std::size_t>(i)) && !shapes.Places.row(i).allFinite())
     {
       throw InputError(Sentence("a coordinate is not finite at point ")
-        << i << " of the sources; allowed: finite coordinates");
+        << i << " of " << shapes.Name << "; allowed: finite coordinates");
     }
   }
   constexpr std::size_t reportEvery = 256;

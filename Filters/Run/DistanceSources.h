@@ -24,6 +24,7 @@ struct SourceShapes
   /// Pairs of rows of Places: the straight parts of lines. Rows in no pair are points.
   std::vector<std::array<Index, 2>> Segments;
   std::vector<char> Hidden; ///< per row, nonzero: takes no part, and is in no pair; empty: none
+  const char* Name = "the sources"; ///< for messages
 
   /// The label of each row: its own number, and of lines that share points the smallest of theirs.
   std::vector<Index> FindLabels() const;

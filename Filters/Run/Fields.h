@@ -60,6 +60,9 @@ struct Fields
   std::shared_ptr<const SourceShapes> Sources;
   Located<std::vector<double>> Speeds; ///< per point or cell; may be empty
   std::vector<double> StartTimes; ///< per point; may be empty
+  /// Points in space, from whose nearest places on the surface paths lead to the nearest source; null if
+  /// there are none. Their segments do not count.
+  std::shared_ptr<const SourceShapes> PathPoints;
   /// Of a surface whose edges were bisected. Per point, nonzero: its values were interpolated, and
   /// are no measurements. Per cell: the cell of the given surface that it was cut from. Both may be
   /// empty.

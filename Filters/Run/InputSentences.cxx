@@ -29,9 +29,8 @@ const std::map<std::string, const char*> Table = {
   { "NoPointSet",
     "{} a {}; allowed: a vtkPointSet, such as vtkPolyData (for a table, apply Table To Points, "
     "which is vtkTableToPolyData)" },
-  { "NoPoints", "the second input, {}, has {} points; allowed: 1 or more{}" },
-  { "HiddenPoints",
-    "the second input, {}, has {} hidden points; allowed: 1 or more{} that are not hidden" },
+  { "NoPoints", "{}, has {} points; allowed: 1 or more{}" },
+  { "HiddenPoints", "{}, has {} hidden points; allowed: 1 or more{} that are not hidden" },
   { "NotAmongPoints",
     "{} is not among the point arrays of the points with values; choose one of them" },
   { "NoScalarsOfPoints",

@@ -55,6 +55,7 @@ struct FieldSummary
   bool Sources = false; ///< points or lines, in place of data
   bool Speeds = false;
   bool StartTimes = false;
+  bool PathPoints = false;
 };
 
 /// Append a problem if factors along and across a direction differ and there are no directions.

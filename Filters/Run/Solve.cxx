@@ -131,6 +131,7 @@ public:
     summary.Rates = this->Data.Rates.rows() > 0;
     summary.DataAreTerms = this->Data.DataAreTerms;
     summary.Sources = this->Data.Sources != nullptr;
+    summary.PathPoints = this->Data.PathPoints != nullptr;
     summary.Speeds = !this->Data.Speeds.Values.empty();
     summary.StartTimes = !this->Data.StartTimes.empty();
     return summary;

@@ -239,6 +239,7 @@ FieldSummary PythonFields::Summarize() const
     this->Samples ? static_cast<int>(this->Samples->Given.cols()) : this->Components;
   summary.DataName = this->DataWord();
   summary.Sources = this->Sources != nullptr;
+  summary.PathPoints = this->PathPoints != nullptr;
   summary.Speeds = this->Find("speeds") != nullptr;
   summary.StartTimes =
     this->Find("start_times") || (this->Sources && !this->Sources->StartTimes.empty());
@@ -300,6 +301,7 @@ Fields PythonFields::Read() const
   }
   fields.Samples = this->Samples;
   fields.Sources = this->Sources;
+  fields.PathPoints = this->PathPoints;
   fields.Speeds = this->Read<double>("speeds");
   fields.StartTimes = this->Read<double>("start_times").Values;
   if (this->Find("ids"))
@@ -390,6 +392,15 @@ void PythonFields::SetSources(const std::optional<DoubleArray>& places,
   this->Sources = std::move(sources);
 }
 
+void PythonFields::SetPathPoints(const DoubleArray& places, const FlagArray& hidden)
+{
+  auto points = std::make_shared<SourceShapes>();
+  points->Places =
+    Eigen::Map<const Points>(places.data(), static_cast<Eigen::Index>(places.shape(0)), 3);
+  points->Hidden = ReadFlags(hidden);
+  this->PathPoints = std::move(points);
+}
+
 PythonFields PythonFields::Columns(int first, int count) const
 {
   static std::atomic<std::uint64_t> panels{ 0 };
@@ -431,14 +442,18 @@ Fingerprint PythonFields::Version() const
     add(this->Samples->Given);
     add(this->Samples->Weights);
   }
-  if (this->Sources)
+  for (const SourceShapes* const shapes : { this->Sources.get(), this->PathPoints.get() })
   {
-    add(this->Sources->Places);
-    add(this->Sources->Segments);
-    add(this->Sources->Hidden);
-    add(this->Sources->OfPoints);
-    add(this->Sources->OfTriangles);
-    add(this->Sources->StartTimes);
+    version.AddNumber(std::uint64_t{ shapes ? 1U : 0U });
+    if (shapes)
+    {
+      add(shapes->Places);
+      add(shapes->Segments);
+      add(shapes->Hidden);
+      add(shapes->OfPoints);
+      add(shapes->OfTriangles);
+      add(shapes->StartTimes);
+    }
   }
   version.AddNumber(std::uint64_t{ this->DataAreTerms ? 1U : 0U });
   return version;

@@ -137,6 +137,8 @@ public:
     const std::optional<LongArray>& segments, const std::optional<FlagArray>& hidden,
     const std::optional<LongArray>& rows, const std::optional<FactorArray>& starts);
 
+  void SetPathPoints(const DoubleArray& places, const FlagArray& hidden);
+
   /// The same with a panel of the data's columns, which Components counts.
   PythonFields Columns(int first, int count) const;
   FieldSummary Summarize() const;
@@ -168,6 +170,7 @@ private:
   std::map<std::string, Given> Arrays; ///< by kind
   std::shared_ptr<const PointSamples> Samples; ///< in place of data
   std::shared_ptr<const SourceShapes> Sources; ///< of distances, in place of data
+  std::shared_ptr<const SourceShapes> PathPoints; ///< of distances
   int FirstColumn = 0;
   int AllColumns = 0; ///< 0: no panel
   std::shared_ptr<const std::vector<char>> Missing; ///< as in Fields

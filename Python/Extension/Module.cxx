@@ -138,6 +138,7 @@ NB_MODULE(_core, m)
       "name"_a = "")
     .def("set_sources", &PythonFields::SetSources, "places"_a.none(), "segments"_a.none(),
       "hidden"_a.none(), "rows"_a.none() = nb::none(), "starts"_a.none() = nb::none())
+    .def("set_path_points", &PythonFields::SetPathPoints, "places"_a, "hidden"_a)
     .def("columns", &PythonFields::Columns, "first"_a, "count"_a);
 
   nb::class_<ModelRun>(m, "ModelRun")

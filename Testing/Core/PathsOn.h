@@ -86,7 +86,47 @@ public:
 
   Found Find(const Place& from, const Place& to)
   {
-    const GeodesicPath::Path path = this->Paths.Find(from, to);
+    Found found = this->Draw(from, this->Paths.Find(from, to));
+    found.Gap =
+      std::max(found.Gap, (this->InSpace(to.Triangle, to.At) - found.Points.back()).norm());
+    return found;
+  }
+
+  /// From points of the surface to the nearest of pieces, with the distances by ExactDistance.
+  std::vector<Found> FindAll(const std::vector<Index>& points,
+    const std::vector<SourcePiece>& pieces, std::vector<double>& distances)
+  {
+    std::vector<Place> from;
+    for (const Index point : points)
+    {
+      from.push_back(this->At(point));
+    }
+    const std::vector<double> times = this->Exact.Find(pieces, Never).Times;
+    std::vector<Found> all;
+    for (const GeodesicPath::Path& path : this->Paths.FindAll(from, pieces))
+    {
+      const auto k = all.size();
+      all.push_back(this->Draw(from[k], path));
+      distances.push_back(
+        times[static_cast<std::size_t>(this->VertexOf.at(points[k]))] * this->Mesh->LengthUnit());
+      if (path.Piece >= 0)
+      {
+        // Its distance from the straight piece in space
+        const SourcePiece& piece = pieces[static_cast<std::size_t>(path.Piece)];
+        const Eigen::RowVector3d begin = this->InSpace(piece.Triangle, piece.From);
+        const Eigen::RowVector3d along = this->InSpace(piece.Triangle, piece.To) - begin;
+        const Eigen::RowVector3d at = all.back().Points.back() - begin;
+        const double share =
+          along.norm() > 0.0 ? std::clamp(at.dot(along) / along.squaredNorm(), 0.0, 1.0) : 0.0;
+        all.back().Gap = std::max(all.back().Gap, (at - share * along).norm());
+      }
+    }
+    return all;
+  }
+
+private:
+  Found Draw(const Place& from, const GeodesicPath::Path& path) const
+  {
     Found found;
     found.IsFollowed = path.IsFollowed;
     found.Length = path.Length * this->Mesh->LengthUnit();
@@ -106,12 +146,8 @@ public:
         this->Measure(path.Segments[k - 1], segment, found);
       }
     }
-    found.Gap =
-      std::max(found.Gap, (this->InSpace(to.Triangle, to.At) - found.Points.back()).norm());
     return found;
   }
-
-private:
   Index VertexAt(Index corner) const { return this->Mesh->TriangleVertices().data()[corner]; }
   Eigen::RowVector3d At3(Index vertex) const
   {

@@ -122,6 +122,47 @@ TEST(GeodesicPath, OfRealMeshesIsAsLongAsTheExactDistanceAndStraight)
   }
 }
 
+/// From points to the nearest of points and straight pieces of lines, also along edges, which are met at a
+/// right angle or at an end.
+TEST(GeodesicPath, ToTheNearestOfPointsAndLinesIsAsLongAsTheExactDistanceAndStraight)
+{
+  for (const Shape& s : { Icosphere(0), Icosphere(3), Tetrahedron(), Torus(24, 16), Plate(12, 1.0),
+         Strip(30, 4), Disk(8), Cylinder(16, 12), Moebius(30, 4), ThreeFins(4), Rough(2, 0.4),
+         LatitudeLongitudeSphere(40, 20), CylinderWithFans(40, 8), Box(30, 12, 12) })
+  {
+    PathsOn on(s);
+    for (Index round = 0; round < 6; ++round)
+    {
+      std::vector<SourcePiece> pieces;
+      for (Index k = 0; k < (round < 3 ? 1 : 5); ++k)
+      {
+        const MeshPlace a = RandomPlace(on, 17 + round, 3 * k + round);
+        const MeshPlace b = RandomPlace(on, 18 + round, 3 * k + round);
+        pieces.push_back({ a.Triangle, a.At, (round + k) % 4 == 3 ? a.At : b.At });
+      }
+      std::vector<Index> points;
+      for (Index k = 0; k < 12; ++k)
+      {
+        const auto point = static_cast<Index>(UniformRandom(19, round, k) * s.NumberOfVertices());
+        if (on.Has(point))
+        {
+          points.push_back(point);
+        }
+      }
+      std::vector<double> distances;
+      const std::vector<PathsOn::Found> paths = on.FindAll(points, pieces, distances);
+      for (std::size_t k = 0; k < paths.size(); ++k)
+      {
+        if (std::isfinite(distances[k]))
+        {
+          EXPECT_NEAR(paths[k].Length, distances[k], 1e-12 * distances[k]) << round << " " << k;
+          ExpectStraight(paths[k]);
+        }
+      }
+    }
+  }
+}
+
 // The spider and the fly in a room of 30 x 12 x 12, 1 from the ceiling and 1 from the floor in the middle
 // of the end walls (H. Dudeney, 1903): over five of the six sides the way is 40, straight down and up 42.
 TEST(GeodesicPath, OfTheSpiderToTheFlyGoesOverFiveSides)

@@ -187,6 +187,118 @@ TEST(DistanceFilter, TakesTheSourcesOfEachBlock)
   }
 }
 
+/// The polylines of the paths, as their points.
+std::vector<std::vector<std::array<double, 3>>> PathsOf(Filter* filter)
+{
+  auto* const lines = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
+  std::vector<std::vector<std::array<double, 3>>> paths;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType c = 0; c < lines->GetNumberOfCells(); ++c)
+  {
+    lines->GetCellPoints(c, corners);
+    paths.emplace_back();
+    for (const vtkIdType corner : *corners)
+    {
+      paths.back().push_back({});
+      lines->GetPoint(corner, paths.back().back().data());
+    }
+  }
+  return paths;
+}
+
+double OfPath(Filter* filter, const char* name, vtkIdType path)
+{
+  auto* const lines = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(1));
+  return lines->GetCellData()->GetArray(name)->GetComponent(path, 0);
+}
+
+TEST(DistanceFilter, HasPathsToTheNearestSource)
+{
+  const auto sphere = Sphere(3);
+  AddPointArray(sphere, "source", 1, [](vtkIdType i, int) { return i % 200 == 7 ? 1.0 + i : 0.0; });
+  std::vector<std::array<double, 3>> places;
+  for (vtkIdType i = 0; i < sphere->GetNumberOfPoints(); i += 11)
+  {
+    places.emplace_back();
+    sphere->GetPoint(i, places.back().data());
+  }
+  const auto ofPoints = MakeFilter(sphere);
+  ofPoints->SetMethodToExact();
+  const auto ofLine = MakeFilter(sphere, Places({ { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1 } }));
+  ofLine->SetMethodToExact();
+  for (Filter* const filter : { ofPoints.Get(), ofLine.Get() })
+  {
+    filter->Update();
+    EXPECT_EQ(PathsOf(filter).size(), 0u);
+    filter->SetInputData(2, Places(places));
+    filter->Update();
+    const auto paths = PathsOf(filter);
+    ASSERT_EQ(paths.size(), places.size());
+    for (vtkIdType k = 0; k < static_cast<vtkIdType>(paths.size()); ++k)
+    {
+      const auto& path = paths[static_cast<std::size_t>(k)];
+      double length = 0.0;
+      for (std::size_t j = 1; j < path.size(); ++j)
+      {
+        length += std::sqrt(vtkMath::Distance2BetweenPoints(path[j - 1].data(), path[j].data()));
+      }
+      const double distance = At(filter, 11 * k);
+      EXPECT_NEAR(length, distance, 1e-12) << k;
+      EXPECT_NEAR(OfPath(filter, "Length", k), distance, 1e-12) << k;
+      EXPECT_EQ(OfPath(filter, "PathPoint", k), k);
+      EXPECT_EQ(OfPath(filter, "NearestSource", k), At(filter, 11 * k, "NearestSource")) << k;
+      EXPECT_EQ(path.front(), places[static_cast<std::size_t>(k)]);
+    }
+  }
+}
+
+TEST(DistanceFilter, PathsFollowTheirPointsAndBlocks)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MarkedGrid(9, 5, 0));
+  blocks->SetBlock(1, MarkedGrid(9, 5, 8));
+  blocks->SetBlock(2, MarkedGrid(9, 5, -1)); // without a source
+  auto filter = MakeFilter(blocks);
+  const auto points = Places({ { 3.5, 1.0, 0.4 }, { 0.0, 4.0, -0.2 } });
+  filter->SetInputData(2, points);
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_TRUE(Has(messages.Warnings[0], "2 path points have no path")) << messages.Warnings[0];
+  const double corners[] = { 0.0, 0.0, 8.0, 8.0 };
+  ASSERT_EQ(PathsOf(filter).size(), 4u);
+  for (vtkIdType k = 0; k < 4; ++k)
+  {
+    EXPECT_EQ(OfPath(filter, "Block", k), k / 2);
+    EXPECT_EQ(OfPath(filter, "PathPoint", k), k % 2);
+    const double x = k % 2 == 0 ? 3.5 : 0.0, y = k % 2 == 0 ? 1.0 : 4.0;
+    EXPECT_NEAR(OfPath(filter, "Length", k), std::hypot(x - corners[k], y), 1e-12);
+  }
+  points->GetPoints()->SetPoint(0, 2.0, 1.0, 0.0);
+  filter->Modified();
+  filter->Update();
+  EXPECT_NEAR(OfPath(filter, "Length", 0), std::hypot(2.0, 1.0), 1e-12);
+  // Points in another unit, and an array of speeds
+  filter->SetInputData(2, Places({ { 35.0, 40.0, 0.0 } }));
+  messages.Warnings.clear();
+  filter->Update();
+  ASSERT_EQ(messages.Warnings.size(), 1u);
+  EXPECT_TRUE(Has(messages.Warnings[0], "path points")) << messages.Warnings[0];
+  filter->SetAcrossSpeed(2.0);
+  SetInputArray(filter, 2, "source");
+  EXPECT_TRUE(Has(ErrorOf(filter), "the path points are set together with speeds or start times"));
+  EXPECT_EQ(PathsOf(filter).size(), 0u);
+  filter->SetAcrossSpeed(1.0);
+  SetInputArray(filter, 2, "");
+  filter->SetInputData(2, Places({ { vtkMath::Nan(), 0.0, 0.0 } }));
+  EXPECT_TRUE(Has(ErrorOf(filter), "a coordinate is not finite at point 0 of the path points"));
+  filter->SetInputData(2, Places({}));
+  EXPECT_TRUE(Has(ErrorOf(filter), "the third input, the path points, has 0 points"));
+  filter->RemoveAllInputConnections(2);
+  filter->Update();
+  EXPECT_EQ(PathsOf(filter).size(), 0u);
+}
+
 TEST(DistanceFilter, NamesInputsThatItCannotTake)
 {
   const auto grid = MarkedGrid(9, 5, 3);

@@ -67,7 +67,7 @@ def run(name, properties, indices, arrays):
         for i in range(data.GetNumberOfArrays()):
             if data.GetArrayName(i) not in indices:
                 results[data.GetArrayName(i)] = vtk_to_numpy(data.GetArray(i))
-    if algorithm.GetNumberOfOutputPorts() > 1:
+    if algorithm.GetNumberOfOutputPorts() > 1 and algorithm.GetOutputDataObject(1).IsA("vtkTable"):
         table = algorithm.GetOutputDataObject(1)
         for i in range(table.GetNumberOfColumns()):
             if table.GetColumnName(i) != "Seconds":

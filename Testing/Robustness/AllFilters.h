@@ -528,6 +528,7 @@ inline std::vector<FilterKind> AllFilters()
       {
         f->SetMethodToExact();
         SetInputArray(f, 0, "sources");
+        f->SetInputData(2, Sphere(0)); // the points that paths lead from
       }),
     MakeKind<vtkSurfaceDistanceFilter>("DistanceEikonal", "Distance", 0,
       [](vtkSurfaceDistanceFilter* f)

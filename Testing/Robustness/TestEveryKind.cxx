@@ -448,7 +448,8 @@ TEST_P(EveryKind, HasTheSameBitsAtAnySizeInNaturalUnits)
   const bool found = tv && tv->GetEffectiveFidelityWeight() != tv->GetFidelityWeight();
   const double allowed = found ? 1e-12 : 0.0;
   EXPECT_LE(LargestDifference(result, scaled), allowed);
-  if (filters[0]->GetNumberOfOutputPorts() > 1 && History(filters[0])->GetColumnByName("Energy"))
+  if (filters[0]->GetNumberOfOutputPorts() > 1 && History(filters[0]) &&
+    History(filters[0])->GetColumnByName("Energy"))
   {
     const double ratio = EnergyScale(this->GetParam(), length, value);
     for (vtkIdType row = 0; row < History(filters[0])->GetNumberOfRows(); ++row)

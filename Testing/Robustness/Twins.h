@@ -88,7 +88,7 @@ inline std::string Difference(vtkPolyDataAlgorithm* a, vtkPolyDataAlgorithm* b)
       ActiveName(x->GetCellData(), type) == ActiveName(y->GetCellData(), type);
     different += same ? "" : "active arrays ";
   }
-  if (a->GetNumberOfOutputPorts() > 1)
+  if (a->GetNumberOfOutputPorts() > 1 && History(a))
   {
     for (vtkPolyDataAlgorithm* const either : { a, b })
     {
@@ -96,10 +96,11 @@ inline std::string Difference(vtkPolyDataAlgorithm* a, vtkPolyDataAlgorithm* b)
     }
     different += DifferentArrays(History(a)->GetRowData(), History(b)->GetRowData());
   }
-  if (a->GetNumberOfOutputPorts() > 2)
+  const int last = a->GetNumberOfOutputPorts() - 1;
+  if (last > 0 && vtkPolyData::SafeDownCast(a->GetOutputDataObject(last)))
   {
-    vtkPolyData* const lines = vtkPolyData::SafeDownCast(a->GetOutputDataObject(2));
-    vtkPolyData* const others = vtkPolyData::SafeDownCast(b->GetOutputDataObject(2));
+    vtkPolyData* const lines = vtkPolyData::SafeDownCast(a->GetOutputDataObject(last));
+    vtkPolyData* const others = vtkPolyData::SafeDownCast(b->GetOutputDataObject(last));
     const bool same = lines->GetNumberOfPoints() == others->GetNumberOfPoints() &&
       (lines->GetNumberOfPoints() == 0 ||
         SameValues(lines->GetPoints()->GetData(), others->GetPoints()->GetData()));

@@ -52,9 +52,9 @@ public:
     this->Front.Run(progress.Part(0.0, 0.5),
       [&](Index edge, const std::vector<GeodesicWindow>&)
       { isMet[static_cast<std::size_t>(edge / 3)] = 1; });
-    for (const MeshPlace& source : this->Front.PointSources)
+    for (const auto& [triangle, piece] : this->Front.Pieces)
     {
-      isMet[static_cast<std::size_t>(source.Triangle)] = 1;
+      isMet[static_cast<std::size_t>(triangle)] = 1;
     }
     for (const Index v : this->Front.Reached)
     {
@@ -106,16 +106,7 @@ public:
         }
       }
     }
-    for (const MeshPlace& source : this->Front.PointSources)
-    {
-      if (source.Triangle == place.Triangle)
-      {
-        const Index edge = 3 * place.Triangle;
-        least = std::min(least,
-          (this->Frames.PlaceOn(edge, source.At) - this->Frames.PlaceOn(edge, place.At)).norm());
-      }
-    }
-    return least;
+    return std::min(least, this->Front.FindNearestPiece(place).Distance);
   }
 
   std::vector<Index> Within; ///< triangles that are in the disk as a whole

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -58,14 +59,12 @@ public:
       }
       else
       {
-        const auto& sources = this->Front.PointSources;
-        const auto source = std::find_if(sources.begin(), sources.end(),
-          [&](const MeshPlace& candidate) { return candidate.Triangle == place.Triangle; });
-        if (source == sources.end())
+        const WindowFront::NearestPiece piece = this->Front.FindNearestPiece(place);
+        if (!(piece.Distance < Never))
         {
           return false;
         }
-        this->Segments.push_back({ place.Triangle, place.At, source->At });
+        this->Segments.push_back({ place.Triangle, place.At, piece.At });
         return true;
       }
       if (this->Vertex < 0)
@@ -194,14 +193,13 @@ private:
     const Vector2d x(crossing, 0.0), apex(frame.X, frame.Y), way = end - x;
     const double size = std::max(frame.LeftLength, frame.RightLength);
     const MeshPlace place{ edge / 3, this->Frames.PlaceAlong(edge, crossing) };
-    for (const MeshPlace& source : this->Front.PointSources)
+    if (start == 0.0 && this->Front.Pieces.count(place.Triangle) > 0)
     {
       constexpr double tolerance = 1e-9;
-      if (source.Triangle == place.Triangle &&
-        (this->Frames.PlaceOn(edge, source.At) - end).norm() <= tolerance * (way.norm() + size) &&
-        start == 0.0)
+      const WindowFront::NearestPiece piece = this->Front.FindNearestPiece(edge, end);
+      if (piece.Distance <= tolerance * (way.norm() + size))
       {
-        this->Segments.push_back({ place.Triangle, place.At, source.At });
+        this->Segments.push_back({ place.Triangle, place.At, piece.At });
         this->Vertex = -1;
         return { -1, true };
       }
@@ -250,16 +248,8 @@ public:
     , Target(place)
     , Front(front)
   {
-    for (const MeshPlace& source : front.PointSources)
-    {
-      if (source.Triangle == place.Triangle)
-      {
-        const Index edge = 3 * place.Triangle;
-        const double distance =
-          (frames.PlaceOn(edge, source.At) - frames.PlaceOn(edge, place.At)).norm();
-        this->Take(distance, { -1, edge });
-      }
-    }
+    const WindowFront::NearestPiece piece = front.FindNearestPiece(place);
+    this->Take(piece.Distance, { -1, 3 * place.Triangle }, piece.Source);
   }
 
   /// Take windows that go over the triangle of the place.
@@ -268,7 +258,11 @@ public:
     const Vector2d x = this->Frames.PlaceOn(edge, this->Target.At);
     for (const GeodesicWindow& w : windows)
     {
-      this->Take(w.Beyond(x[0], x[1]), { -1, edge, true, { w.X, w.Y }, w.Start });
+      const double distance = w.Beyond(x[0], x[1]);
+      if (distance < this->Least)
+      {
+        this->Take(distance, WindowFront::LastPartOver(edge, w, x), w.Source);
+      }
     }
   }
 
@@ -286,19 +280,22 @@ public:
       {
         this->Least = distance;
         this->Part = { vertex, corner };
+        this->Piece = this->Front.Sources[static_cast<std::size_t>(vertex)];
       }
     }
     return this->Least;
   }
   const LastPart& Last() const { return this->Part; }
+  Index LastPiece() const { return this->Piece; }
 
 private:
-  void Take(double distance, const LastPart& part)
+  void Take(double distance, const LastPart& part, Index piece)
   {
     if (distance < this->Least)
     {
       this->Least = distance;
       this->Part = part;
+      this->Piece = piece;
     }
   }
 
@@ -308,6 +305,7 @@ private:
   const WindowFront& Front;
   double Least = Never;
   LastPart Part;
+  Index Piece = -1;
 };
 
 } // namespace
@@ -315,50 +313,102 @@ private:
 GeodesicPath::Path GeodesicPath::Find(
   const MeshPlace& from, const MeshPlace& to, const ProgressMonitor& progress)
 {
-  Path path = this->FindOnce(from, to, progress);
-  if (path.Length < Never && !path.IsFollowed)
-  {
-    // Round-off among needles may hide a way from one end alone.
-    path = this->FindOnce(to, from, progress);
-    std::reverse(path.Segments.begin(), path.Segments.end());
-    for (PathSegment& segment : path.Segments)
-    {
-      std::swap(segment.From, segment.To);
-    }
-  }
-  const auto length = [&](const PathSegment& segment)
-  {
-    const Index edge = 3 * segment.Triangle;
-    return (this->Frames.PlaceOn(edge, segment.To) - this->Frames.PlaceOn(edge, segment.From))
-      .norm();
-  };
-  const double least = 1e-13 * path.Length;
-  path.Segments.erase(std::remove_if(path.Segments.begin(), path.Segments.end(),
-                        [&](const PathSegment& segment) { return length(segment) <= least; }),
-    path.Segments.end());
-  return path;
+  return this->FindAll({ from }, { { to.Triangle, to.At, to.At } }, progress).front();
 }
 
-/// The way back from `from` along windows that run from `to`.
-GeodesicPath::Path GeodesicPath::FindOnce(
-  const MeshPlace& from, const MeshPlace& to, const ProgressMonitor& progress)
+std::vector<GeodesicPath::Path> GeodesicPath::FindAll(const std::vector<MeshPlace>& from,
+  const std::vector<SourcePiece>& to, const ProgressMonitor& progress)
 {
-  this->Front.AddSource({ to.Triangle, to.At, to.At }, 0);
-  this->Front.Watched.resize(static_cast<std::size_t>(this->Mesh.NumberOfTriangles()), 0);
-  char& watched = this->Front.Watched[static_cast<std::size_t>(from.Triangle)];
-  watched = 1;
-  PathArrival arrival(this->Mesh, this->Frames, from, this->Front);
+  std::vector<Path> paths = this->FindOnce(from, to, progress);
+  for (std::size_t k = 0; k < paths.size(); ++k)
+  {
+    Path& path = paths[k];
+    if (path.Length < Never && !path.IsFollowed)
+    {
+      // Round-off among needles may hide a way from one end alone.
+      const SourcePiece& piece = to[static_cast<std::size_t>(path.Piece)];
+      const SourcePiece begin{ from[k].Triangle, from[k].At, from[k].At };
+      if (piece.From == piece.To)
+      {
+        path = this->FindOnce({ { piece.Triangle, piece.From } }, { begin }, progress).front();
+        path.Piece = static_cast<Index>(&piece - to.data());
+        Turn(path);
+      }
+    }
+    const auto length = [&](const PathSegment& segment)
+    {
+      const Index edge = 3 * segment.Triangle;
+      return (this->Frames.PlaceOn(edge, segment.To) - this->Frames.PlaceOn(edge, segment.From))
+        .norm();
+    };
+    const double least = 1e-13 * path.Length;
+    path.Segments.erase(std::remove_if(path.Segments.begin(), path.Segments.end(),
+                          [&](const PathSegment& segment) { return length(segment) <= least; }),
+      path.Segments.end());
+  }
+  return paths;
+}
+
+/// From the other end.
+void GeodesicPath::Turn(Path& path)
+{
+  std::reverse(path.Segments.begin(), path.Segments.end());
+  for (PathSegment& segment : path.Segments)
+  {
+    std::swap(segment.From, segment.To);
+  }
+}
+
+/// The ways back from places along windows that run from pieces.
+std::vector<GeodesicPath::Path> GeodesicPath::FindOnce(const std::vector<MeshPlace>& from,
+  const std::vector<SourcePiece>& to, const ProgressMonitor& progress)
+{
+  for (std::size_t k = 0; k < to.size(); ++k)
+  {
+    this->Front.AddSource(to[k], static_cast<Index>(k));
+  }
+  std::vector<char>& watched = this->Front.Watched;
+  watched.assign(static_cast<std::size_t>(this->Mesh.NumberOfTriangles()), 0);
+  std::vector<PathArrival> arrivals;
+  std::unordered_multimap<Index, std::size_t> arrivalsAt; // triangles
+  for (const MeshPlace& place : from)
+  {
+    watched[static_cast<std::size_t>(place.Triangle)] = 1;
+    arrivalsAt.emplace(place.Triangle, arrivals.size());
+    arrivals.emplace_back(this->Mesh, this->Frames, place, this->Front);
+  }
+  std::size_t open = arrivals.size();
   this->Front.Run(
     progress,
-    [&](Index edge, const std::vector<GeodesicWindow>& windows) { arrival.Add(edge, windows); },
-    [&] { return arrival.Distance(); });
-  watched = 0;
-  Path path;
-  path.Length = arrival.Distance();
-  path.IsFollowed = path.Length < Never &&
-    PathTrace(this->Mesh, this->Frames, this->Front, path.Segments).Follow(from, arrival.Last());
+    [&](Index edge, const std::vector<GeodesicWindow>& windows)
+    {
+      const auto [begin, end] = arrivalsAt.equal_range(edge / 3);
+      for (auto found = begin; found != end; ++found)
+      {
+        arrivals[found->second].Add(edge, windows);
+      }
+    },
+    [&](double least)
+    {
+      while (open > 0 && least > arrivals[open - 1].Distance())
+      {
+        --open;
+      }
+      return open == 0;
+    });
+  std::vector<Path> paths;
+  for (std::size_t k = 0; k < from.size(); ++k)
+  {
+    Path path;
+    path.Length = arrivals[k].Distance();
+    path.Piece = arrivals[k].LastPiece();
+    path.IsFollowed = path.Length < Never &&
+      PathTrace(this->Mesh, this->Frames, this->Front, path.Segments)
+        .Follow(from[k], arrivals[k].Last());
+    paths.push_back(std::move(path));
+  }
   this->Front.Clear();
-  return path;
+  return paths;
 }
 
 } // namespace SurfaceDiffusion

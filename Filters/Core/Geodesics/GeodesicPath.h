@@ -19,8 +19,8 @@ struct PathSegment
   std::array<double, 3> From, To;
 };
 
-/// Shortest paths on a surface of flat triangles, by the windows of ExactDistance: from the end of a
-/// path they run until they have come to its begin, and the path goes back along them. Each window
+/// Shortest paths on a surface of flat triangles, by the windows of ExactDistance: from the ends of
+/// paths they run until they have come to their begins, and the paths go back along them. Each window
 /// knows the place in the plane that its ways come from, so that the path is a straight line over the
 /// triangles laid out one after the other, up to a vertex where it turns or to its end (J. Mitchell,
 /// D. Mount, C. Papadimitriou, SIAM J. Comput. 16, 1987, section 5).
@@ -46,15 +46,21 @@ public:
     /// Whether the segments lead from begin to end; if not, round-off among needles hides where.
     bool IsFollowed = false;
     std::vector<PathSegment> Segments; ///< from begin to end, of lengths above 0
+    Index Piece = -1; ///< the number of the piece that it ends at; -1: there is no path
   };
 
   /// The time and the memory are those of the triangles that are no farther from `to` than `from` is.
   /// Throws Aborted.
   Path Find(const MeshPlace& from, const MeshPlace& to,
     const ProgressMonitor& progress = ProgressMonitor());
+  /// From each place to the nearest of the pieces. The windows run once for all.
+  std::vector<Path> FindAll(const std::vector<MeshPlace>& from, const std::vector<SourcePiece>& to,
+    const ProgressMonitor& progress = ProgressMonitor());
 
 private:
-  Path FindOnce(const MeshPlace& from, const MeshPlace& to, const ProgressMonitor& progress);
+  std::vector<Path> FindOnce(const std::vector<MeshPlace>& from, const std::vector<SourcePiece>& to,
+    const ProgressMonitor& progress);
+  static void Turn(Path& path);
 
   const TriangleMesh& Mesh;
   const EdgeFrames& Frames;

@@ -43,6 +43,19 @@ WindowFront::WindowFront(const TriangleMesh& mesh, const EdgeFrames& frames, dou
 {
 }
 
+WindowFront::LastPart WindowFront::LastPartOver(
+  Index edge, const Window& w, const Eigen::Vector2d& place)
+{
+  if (!w.IsStrip)
+  {
+    return { -1, edge, true, { w.X, w.Y }, w.Start };
+  }
+  const double x = std::clamp(
+    w.Y < 0.0 ? place[0] - place[1] * w.X / w.Y : place[0], w.Begin, w.End); // of the crossing
+  const double distance = w.At(x);
+  return { -1, edge, true, { x + distance * w.X, std::min(0.0, distance * w.Y) }, 0.0 };
+}
+
 void WindowFront::Reach(Index vertex, double time, Index source, const Incoming& incoming)
 {
   const auto v = static_cast<std::size_t>(vertex);
@@ -118,7 +131,7 @@ void WindowFront::QueueChanged()
 }
 
 void WindowFront::Run(
-  const ProgressMonitor& progress, const Watch& watch, const std::function<double()>& bound)
+  const ProgressMonitor& progress, const Watch& watch, const std::function<bool(double)>& isDone)
 {
   progress.Report(0.0); // a small surface has no other report
   std::vector<Window> windows;
@@ -126,7 +139,7 @@ void WindowFront::Run(
   for (this->QueueChanged(); !this->Queue.empty(); this->QueueChanged())
   {
     const auto [least, edge] = this->Queue.top();
-    if (bound && least > bound())
+    if (isDone && isDone(least))
     {
       this->DropWaiting();
       break;
@@ -191,7 +204,7 @@ void WindowFront::Clear()
     this->TimesCrossed[static_cast<std::size_t>(edge)] = 0;
   }
   this->Reached.clear();
-  this->PointSources.clear();
+  this->Pieces.clear();
   this->Crossed.clear();
   this->Past.clear();
 }
@@ -286,7 +299,7 @@ void WindowFront::CrossTriangle(Index edge, std::vector<Window>& windows)
         const double angle =
           std::atan2(frame.X * wayToY - frame.Y * wayToX, frame.X * wayToX + frame.Y * wayToY);
         this->Reach(this->VertexAt(edge), atApex, w.Source,
-          { edge, std::max(0.0, angle), { -1, edge, true, { w.X, w.Y }, w.Start } });
+          { edge, std::max(0.0, angle), LastPartOver(edge, w, { frame.X, frame.Y }) });
       }
     }
     if (fromBegin < 0.0)

@@ -36,13 +36,16 @@ public:
     Eigen::Vector2d Place = { 0.0, 0.0 }; ///< in the frame of this edge, where the part begins
     double Start = 0.0; ///< the distance there
   };
+  /// By a window over an edge to a place in its frame.
+  static LastPart LastPartOver(
+    Index edge, const GeodesicWindow& window, const Eigen::Vector2d& place);
 
   void AddSource(const SourcePiece& piece, Index source);
-  /// watch: has windows that go over marked triangles. bound: the run ends with windows that are
-  /// farther than what it returns. Throws Aborted.
+  /// watch: has windows that go over marked triangles. isDone: whether the run may end before windows
+  /// that are no nearer than this. Throws Aborted.
   using Watch = std::function<void(Index edge, const std::vector<GeodesicWindow>&)>;
   void Run(const ProgressMonitor& progress, const Watch& watch = {},
-    const std::function<double()>& bound = {});
+    const std::function<bool(double)>& isDone = {});
   /// As after construction, once Run() has ended, in the time that Run() took.
   void Clear();
 
@@ -50,8 +53,29 @@ public:
   std::vector<Index> Sources;
   std::vector<Index> Reached; ///< vertices
   std::vector<char> Watched; ///< per triangle, nonzero: marked for Run(); empty: none
-  /// Of sources that are points: the triangles around those on an edge.
-  std::vector<MeshPlace> PointSources;
+  /// A straight piece of a source within a triangle, or a point: From and To.
+  struct PieceWithin
+  {
+    std::array<double, 3> From, To;
+    Index Source;
+  };
+  /// The pieces by their triangles; points on an edge are in all triangles around it, those at vertices
+  /// in none.
+  std::unordered_multimap<Index, PieceWithin> Pieces;
+  /// The piece of a triangle that is nearest to a place, and how far; Never: there is none there.
+  struct NearestPiece
+  {
+    double Distance = Never;
+    std::array<double, 3> At = { 0.0, 0.0, 0.0 };
+    Index Source = -1;
+  };
+  NearestPiece FindNearestPiece(const MeshPlace& place) const
+  {
+    const Index edge = 3 * place.Triangle;
+    return this->FindNearestPiece(edge, this->Frames.PlaceOn(edge, place.At));
+  }
+  /// To a place in the frame of an edge of the triangle.
+  NearestPiece FindNearestPiece(Index edge, const Eigen::Vector2d& place) const;
 
   /// Of the way to a vertex that has been reached.
   const LastPart& LastPartTo(Index vertex) const

@@ -38,7 +38,32 @@ void WindowFront::AddSource(const SourcePiece& piece, Index source)
   {
     this->AddPoint(piece.Triangle, piece.To, source);
     this->AddStrips(piece, source);
+    this->Pieces.insert({ piece.Triangle, { piece.From, piece.To, source } });
   }
+}
+
+WindowFront::NearestPiece WindowFront::FindNearestPiece(Index edge, const Vector2d& x) const
+{
+  NearestPiece nearest;
+  const auto [begin, end] = this->Pieces.equal_range(edge / 3);
+  for (auto found = begin; found != end; ++found)
+  {
+    const PieceWithin& piece = found->second;
+    const Vector2d from = this->Frames.PlaceOn(edge, piece.From);
+    const Vector2d along = this->Frames.PlaceOn(edge, piece.To) - from;
+    const double square = along.squaredNorm();
+    const double share = square > 0.0 ? std::clamp((x - from).dot(along) / square, 0.0, 1.0) : 0.0;
+    const double distance = (x - from - share * along).norm();
+    if (distance < nearest.Distance)
+    {
+      nearest = { distance, piece.From, piece.Source };
+      for (std::size_t a = 0; a < 3 && share > 0.0; ++a)
+      {
+        nearest.At[a] += share * (piece.To[a] - piece.From[a]);
+      }
+    }
+  }
+  return nearest;
 }
 
 void WindowFront::ReachFrom(Index corner, const Vector2d& place, Index source)
@@ -100,7 +125,7 @@ bool WindowFront::IsOnEdge(Index edge, const std::array<double, 3>& at) const
 void WindowFront::LeavePoint(
   Index triangle, const std::array<double, 3>& at, Index source, Index behind)
 {
-  this->PointSources.push_back({ triangle, at });
+  this->Pieces.insert({ triangle, { at, at, source } });
   for (Index edge = 3 * triangle; edge < 3 * triangle + 3; ++edge)
   {
     const Index before = CornerAfter(edge, 2);

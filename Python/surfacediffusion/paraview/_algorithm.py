@@ -68,7 +68,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     OUTPUTS: tuple[str, ...] = ("vtkDataObject", "vtkTable", "vtkPolyData")  #: as many as it has
     RESULT_NAME = ""
 
-    HAS_POINT_INPUT = False
+    POINT_INPUTS = 0  #: the number of optional inputs, which are points
     RUN: Any = None  #: the class of its runs
     NAMED_AFTER = ""  #: the array of the fields that results are named after
     MAY_REFINE_AUTOMATICALLY = False  #: whether RefineTo may be -1
@@ -77,7 +77,7 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
 
     def __init__(self) -> None:
         VTKPythonAlgorithmBase.__init__(
-            self, nInputPorts=2 if self.HAS_POINT_INPUT else 1, nOutputPorts=len(self.OUTPUTS))
+            self, nInputPorts=1 + self.POINT_INPUTS, nOutputPorts=len(self.OUTPUTS))
         self.settings: dict[str, Any] = {}
         self.own = {**_OWN, "ResultArrayName": self.RESULT_NAME}
         self.choices: dict[int, Choice] = {}
@@ -203,9 +203,11 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
 
     def _find_state(self, inputs: Any, parts: Parts) -> list[Any]:
         """The contents of the surfaces and the surface that each is a piece of, and when the filter and its
-        second input were modified. (ParaView copies the input for each time.)"""
-        second = self._find_input(inputs, 1)
-        state: list[Any] = [self.GetMTime(), 0 if second is None else second.GetMTime()]
+        further inputs were modified. (ParaView copies the input for each time.)"""
+        state: list[Any] = [self.GetMTime()]
+        for port in range(1, len(inputs)):
+            further = self._find_input(inputs, port)
+            state.append(0 if further is None else further.GetMTime())
         for block in parts.blocks:
             data = block.input
             arrays = [data.GetPoints().GetData() if data.GetPoints() else None]

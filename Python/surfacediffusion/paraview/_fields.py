@@ -76,6 +76,7 @@ class Fields:
     alpha_is_data: bool = False
     samples: Any = None  #: places, values, weights and name of values that need not be at points of the surface
     sources: Any = None  #: places of points, ends of lines, and which points are hidden
+    path_points: Any = None  #: the same, from which paths lead
     absent: dict[int, tuple[str, str]] = field(default_factory=dict)  #: index: label, problem
     problems: list[str] = field(default_factory=list)
     given: Any = None
@@ -186,6 +187,9 @@ def read_fields(fields: Fields, block: Block) -> None:
         core.set_samples(*fields.samples)
     if fields.sources is not None:
         core.set_sources(*fields.sources)
+    if fields.path_points is not None:
+        places, _, hidden = fields.path_points
+        core.set_path_points(places, hidden)
 
 
 def _as_data(array: Any) -> NDArray[Any] | None:
@@ -218,7 +222,8 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Any, lis
         return None, [say("NoPointSet", "the points with values are", data.GetClassName())]
     hidden = _hidden(data)
     if hidden.all():
-        return None, [say("HiddenPoints" if len(hidden) else "NoPoints", "the points with values", len(hidden), "")]
+        return None, [say("HiddenPoints" if len(hidden) else "NoPoints", "the second input, the points with values",
+                          len(hidden), "")]
     problems: list[str] = []
 
     def find(name: str, label: str) -> Any:
@@ -248,10 +253,10 @@ def read_samples(data: Any, value_name: str, weight_name: str) -> tuple[Any, lis
     return (places, given, factors, values.GetName() or ""), []
 
 
-def read_sources(data: Any) -> tuple[Any, list[str]]:
-    """The points and lines of the second input of distances, and problems with it."""
+def read_sources(data: Any, name: str) -> tuple[Any, list[str]]:
+    """The points and lines of an input of distances, and problems with it."""
     if not isinstance(data, vtkPointSet):
-        return None, [say("NoPointSet", "the second input, the sources, is", data.GetClassName())]
+        return None, [say("NoPointSet", name + ", is", data.GetClassName())]
     hidden = _hidden(data)
     of_points = hidden.copy()
     flags = data.GetCellGhostArray()
@@ -271,7 +276,7 @@ def read_sources(data: Any) -> tuple[Any, list[str]]:
                     segments += [end for pair in zip(corners, corners[1:]) for end in pair]
     hidden[segments] = False  # also of a hidden line
     if hidden.all():
-        return None, [say("HiddenPoints" if len(hidden) else "NoPoints", "the sources", len(hidden), " points or lines")]
+        return None, [say("HiddenPoints" if len(hidden) else "NoPoints", name, len(hidden), " points or lines")]
     return (places_of(data), np.array(segments, dtype=np.int64), hidden.astype(np.uint8)), []
 
 

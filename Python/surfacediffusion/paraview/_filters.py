@@ -32,6 +32,7 @@ class RunFilter(SurfaceFilter):
     """A filter without time steps."""
 
     RUN = _core.SurfaceRuns
+    OUTPUTS = ("vtkDataObject", "vtkPolyData")
 
     def _find_all(self, blocks: list[Block], problems: list[str]) -> list[tuple[Block, Fields]]:
         if self.RESULT_NAME and not self.own["ResultArrayName"]:
@@ -311,7 +312,7 @@ class Segmentation(ModelFilter):
 
 
 class Interpolation(ModelFilter):
-    HAS_POINT_INPUT = True
+    POINT_INPUTS = 1
 
     def read_points(self, data: Any) -> tuple[Any, list[str]]:
         return read_samples(data, self.own["PointValueArray"], self.own["PointWeightArray"])
@@ -343,15 +344,27 @@ class DirectionField(RunFilter):
 
 
 class Distance(RunFilter):
-    HAS_POINT_INPUT = True
+    POINT_INPUTS = 2
     RULES = {**RunFilter.RULES, 0: "mark"}
 
+    def begin(self, inputs: Any) -> None:
+        RunFilter.begin(self, inputs)
+        data = self._find_input(inputs, 2)
+        self.path_points, problems = (None, []) if data is None else read_sources(
+            data, "the third input, the path points")
+        self.problems_of_points = self.problems_of_points + problems
+
     def read_points(self, data: Any) -> tuple[Any, list[str]]:
-        return read_sources(data)
+        return read_sources(data, "the second input, the sources")
+
+    def write_tables(self, blocks: list[Block], results: list[list[Output]], made: list[Any]) -> list[str]:
+        if self.path_points is not None:
+            write_curves(results, self.own["ResultArrayName"], made[1])
+        return []
 
     def find_fields(self, block: Block, fields: Fields) -> bool:
         fields.problems += self.problems_of_points
-        fields.sources = self.points
+        fields.sources, fields.path_points = self.points, self.path_points
         self.find_arrays(block, fields, [1, 2, 8] if self.has_points else [0, 9, 1, 2, 8])
         for array, name in ((fields.data, "SourceArray"), (fields["start_times"], "SourceTimes")):
             if array.on_cells:

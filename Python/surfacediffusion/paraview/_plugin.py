@@ -13,7 +13,6 @@ from typing import Any, Callable
 
 from paraview.modules.vtkRemotingCore import vtkPVPluginTracker  # type: ignore[import-not-found]
 
-from ._algorithm import SurfaceFilter
 from ._fields import ANY
 from ._filters import CLASSES, ModelFilter, RunFilter
 
@@ -44,8 +43,9 @@ def define_filters(module: str) -> dict[str, Any]:
         xml = xml.replace(f'class="{old}"', f'class="{module}.{old}" si_class="vtkSIPythonSourceProxy"')
         usual = RunFilter if proxy.get("base_proxyname") == "SurfaceFilter" else ModelFilter
         properties = _properties(proxy, bases)
-        made = type(old, (CLASSES.get(name, usual),), {
-            "__module__": module, **_constants(proxy, properties), **_methods(properties)})
+        base = CLASSES.get(name, usual)
+        made = type(old, (base,), {
+            "__module__": module, "OUTPUTS": base.OUTPUTS[:len(proxy.findall("OutputPort"))], **_constants(proxy, properties), **_methods(properties)})
         made._pvsm_proxy_xml = xml  # type: ignore[attr-defined]
         objects[old] = made
         objects[f"_{name}ByClass"] = _Definition(_by_class(name, xml))
@@ -87,7 +87,6 @@ def _constants(proxy: Any, properties: dict[str, Any]) -> dict[str, Any]:
             count = counts[element.find("ArrayListDomain").get("input_domain_name")]
             arrays[int(element.get("default_values", 0))] = (name, int(count) if count.isdigit() else ANY)
     return {"MODEL": proxy.find("Hints/SurfaceDiffusion").get("function"), "ARRAYS": arrays,
-            "OUTPUTS": SurfaceFilter.OUTPUTS[:len(proxy.findall("OutputPort"))],
             "RESULT_NAME": properties["ResultArrayName"].get("default_values")}
 
 
