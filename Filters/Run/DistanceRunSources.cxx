@@ -275,8 +275,8 @@ DistanceRun::SourceSet DistanceRun::FindProjected(const BlockInput& input,
   set.Given = found.Count + found.TooFar + found.Outside;
   if (maximumDistance == 0.0)
   {
-    set.Farness = DescribeFarPoints((std::string("of ") + shapes.Name).c_str(), found.Places,
-      found.Distances, surface, !arePathPoints);
+    set.Farness = DescribeFarPoints(arePathPoints ? "that paths lead from" : "of the sources",
+      found.Places, found.Distances, surface, !arePathPoints);
   }
   for (const SourcePiece& piece : found.Pieces)
   {

@@ -283,7 +283,7 @@ TEST(DistanceFilter, PathsFollowTheirPointsAndBlocks)
   messages.Warnings.clear();
   filter->Update();
   ASSERT_EQ(messages.Warnings.size(), 1u);
-  EXPECT_TRUE(Has(messages.Warnings[0], "path points")) << messages.Warnings[0];
+  EXPECT_TRUE(Has(messages.Warnings[0], "that paths lead from")) << messages.Warnings[0];
   filter->SetAcrossSpeed(2.0);
   SetInputArray(filter, 2, "source");
   EXPECT_TRUE(Has(ErrorOf(filter), "the path points are set together with speeds or start times"));

@@ -9,6 +9,7 @@
 #include "vtkHarmonicMapFilter.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMumfordShahFilter.h"
+#include "vtkSurfaceDistanceFilter.h"
 #include "vtkSurfaceInterpolationFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
@@ -1002,6 +1003,49 @@ TEST(PiecesTogether, HaveLabelsOfTheirCells)
     }
   }
   EXPECT_EQ(LargestDifferenceOfCells(together->GetOutput(), alone->GetOutput(), "RegionId"), 0.0);
+}
+
+/// Sources and points that paths lead from, of which each process has some.
+TEST(PiecesTogether, HavePathsToTheSourcesOfAllProcesses)
+{
+  const auto pointsOf = [](int seed, int process, int count)
+  {
+    constexpr int number = 12;
+    auto points = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkPoints> places;
+    places->SetDataTypeToDouble();
+    for (int i = number * process / count; i < number * (process + 1) / count; ++i)
+    {
+      places->InsertNextPoint(
+        0.5 + 0.5 * Rough(i, seed), 0.5 + 0.5 * Rough(i, seed + 1), 0.05 * Rough(i, seed + 2));
+    }
+    points->SetPoints(places);
+    return points;
+  };
+  const auto make = [&](vtkPolyData* surface, int process, int count)
+  {
+    auto distance = vtkSmartPointer<vtkSurfaceDistanceFilter>::New();
+    distance->SetInputData(surface);
+    distance->SetInputData(1, pointsOf(0, process, count));
+    distance->SetInputData(2, pointsOf(3, process, count));
+    return distance;
+  };
+  const auto together =
+    make(WithCells(N * Rank() / Count(), N * (Rank() + 1) / Count(), true, true), Rank(), Count());
+  const auto alone = make(WithCells(0, N, true, false), 0, 1);
+  alone->SetController(nullptr);
+  together->Update();
+  alone->Update();
+  EXPECT_LT(LargestDifference(together->GetOutput(), alone->GetOutput(), "Distance"), 1e-12);
+  auto* const found = vtkPolyData::SafeDownCast(together->GetOutputDataObject(1));
+  auto* const expected = vtkPolyData::SafeDownCast(alone->GetOutputDataObject(1));
+  EXPECT_EQ(expected->GetNumberOfCells(), 12);
+  ASSERT_EQ(found->GetNumberOfCells(), Rank() == 0 ? 12 : 0);
+  for (vtkIdType c = 0; c < found->GetNumberOfCells(); ++c)
+  {
+    EXPECT_NEAR(found->GetCellData()->GetArray("Length")->GetComponent(c, 0),
+      expected->GetCellData()->GetArray("Length")->GetComponent(c, 0), 1e-12);
+  }
 }
 
 /// Values of the surface's points and cells, and points with values of which each process has some.

@@ -19,11 +19,11 @@ GROUPS = ("Data", "Model", "Constraints", "Solver", "Time")
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
     "FidelityArray", "SeedArray", "CreaseArray", "DataTermArray", "PointsWithValues", "TimestepValues",
-    "Sources", "SourceArray", "SpeedArray", "SourceTimes",
+    "Sources", "PathPoints", "SourceArray", "SpeedArray", "SourceTimes",
     "Mean",  # a list: SetMean(region, component, value)
 }
 PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"],
-         "SurfaceInterpolationFilter": ["Surface", "Fit"]}
+         "SurfaceInterpolationFilter": ["Surface", "Fit"], "SurfaceDistanceFilter": ["Surface", "Paths"]}
 
 
 # What users type into ParaView's search, which finds words of labels only.
@@ -198,7 +198,7 @@ class TestProxies(unittest.TestCase):
                     grouped.append(group.GetProperty(k).GetXMLName())
             shown = [
                 key for key in proxy.ListProperties()
-                if key not in ("Input", "PointsWithValues", "Sources")
+                if key not in ("Input", "PointsWithValues", "Sources", "PathPoints")
                 and not proxy.SMProxy.GetProperty(key).GetInformationOnly()
             ]
             self.assertEqual(sorted(grouped), sorted(shown), name)

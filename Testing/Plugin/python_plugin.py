@@ -281,7 +281,7 @@ def run_kinds_of_input():
         ComputeError=1)
     for method in ("Heat", "Eikonal", "Exact"):
         run("SurfaceDistanceFilter", sphere_with_arrays(), "sources" + method, Sources=points, Method=method,
-            ComputeGradient=1)
+            ComputeGradient=1, PathPoints=producer(scattered()))
     run("HarmonicMapFilter", noisy(sphere_with_arrays()), "moved", MoveVertices=1)
     run("SurfaceSegmentationFilter", sphere_with_arrays(), "means", InputArray=["POINTS", "f"],
         AutomaticMeans=0, NumberOfRegions=2, Mean=[1, 0, -0.3, 2, 0, 0.3])
@@ -305,6 +305,8 @@ def run_left_out():
             PointsWithValues=hide(scattered(), points))
         run("SurfaceDistanceFilter", sphere_with_arrays(), "left out/%d" % number,
             Sources=hide(scattered(), points))
+        run("SurfaceDistanceFilter", sphere_with_arrays(), "left out/paths/%d" % number,
+            Sources=producer(scattered()), PathPoints=hide(scattered(), points))
     far = copy_of(scattered())
     vtk_to_numpy(far.GetPoints().GetData())[:] *= 100.0
     run("SurfaceDistanceFilter", sphere_with_arrays(), "left out/far", Sources=producer(far))
