@@ -233,8 +233,8 @@ void DerivativesRun::Update(
         }
         else
         {
-          this->AddVelocity(std::move(gradients), settings.ResultOnCells);
-          this->AddMeetings(operators, ofTriangles, settings.ResultOnCells);
+          const Values turns = this->FindTurns(operators, ofTriangles, settings.ResultOnCells);
+          this->AddVelocity(std::move(gradients), turns, settings.ResultOnCells);
         }
       }
     }
@@ -298,8 +298,11 @@ void DerivativesRun::AddParts(const Derivatives& operators, const Values& ofTria
   }
 }
 
-void DerivativesRun::AddVelocity(Values gradients, bool onTriangles)
+void DerivativesRun::AddVelocity(Values gradients, const Values& turns, bool onTriangles)
 {
+  // Where fronts meet head on the turn is -2 to -3, and -1 to -1.5 at right angles; at a distance r from a
+  // focus it is the length of an edge over r.
+  constexpr double largestTurn = 0.7;
   constexpr double roundOff = 1e-12; // of the largest gradient: times that do not change
   Values speeds = Values::Zero(gradients.rows(), gradients.cols() / 3);
   for (Eigen::Index c = 0; c < speeds.cols(); ++c)
@@ -309,23 +312,28 @@ void DerivativesRun::AddVelocity(Values gradients, bool onTriangles)
     const double smallest = lengths.size() > 0 ? roundOff * lengths.maxCoeff() : 0.0;
     for (Eigen::Index i = 0; i < speeds.rows(); ++i)
     {
-      const double speed = lengths[i] > smallest ? 1.0 / lengths[i] : 0.0;
+      const bool isUndetermined = std::abs(turns(i, c)) > largestTurn;
+      const double speed = lengths[i] > smallest && !isUndetermined ? 1.0 / lengths[i] : 0.0;
       speeds(i, c) = std::isfinite(speed) ? speed : 0.0;
       slowness.row(i) *= speeds(i, c) * speeds(i, c);
+      speeds(i, c) = isUndetermined ? NaN : speeds(i, c);
     }
   }
   this->Add("ConductionVelocity", std::move(gradients), onTriangles);
   this->Results.back().Active = Role::Vectors;
-  this->Add("Speed", std::move(speeds), onTriangles);
-  this->Results.back().IsBesideResult = true;
+  const auto add = [&](const char* name, Values rows)
+  {
+    this->Add(name, std::move(rows), onTriangles);
+    this->Results.back().IsBesideResult = true;
+  };
+  add("Speed", std::move(speeds));
+  add("Collision", (turns.array() < -largestTurn).cast<double>());
+  add("Focus", (turns.array() > largestTurn).cast<double>());
 }
 
-void DerivativesRun::AddMeetings(
-  const Derivatives& operators, const Values& gradients, bool onTriangles)
+Values DerivativesRun::FindTurns(
+  const Derivatives& operators, const Values& gradients, bool onTriangles) const
 {
-  // Of the divergence of directions, times the root of the control area: where fronts meet head on it is -2 to
-  // -3, and -1 to -1.5 at right angles; at a distance r from a focus it is the length of an edge over r.
-  constexpr double largestTurn = 0.7;
   const TriangleMesh& mesh = this->Domain->InputMesh();
   Values directions = gradients;
   for (Eigen::Index t = 0; t < directions.rows(); ++t)
@@ -337,24 +345,24 @@ void DerivativesRun::AddMeetings(
   }
   const Values turns =
     mesh.ControlAreas().cwiseSqrt().asDiagonal() * operators.Divergence(directions);
-  const auto add = [&](const char* name, const Values& marks)
+  if (!onTriangles)
   {
-    Values rows = marks;
-    if (onTriangles)
+    return turns;
+  }
+  Values largest(mesh.NumberOfTriangles(), turns.cols());
+  for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+  {
+    for (Eigen::Index c = 0; c < turns.cols(); ++c)
     {
-      rows.resize(mesh.NumberOfTriangles(), marks.cols());
-      for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+      largest(t, c) = 0.0;
+      for (int a = 0; a < 3; ++a)
       {
-        const auto corners = mesh.TriangleVertices().row(t);
-        rows.row(t) =
-          marks.row(corners[0]).cwiseMax(marks.row(corners[1])).cwiseMax(marks.row(corners[2]));
+        const double turn = turns(mesh.TriangleVertices()(t, a), c);
+        largest(t, c) = std::abs(turn) > std::abs(largest(t, c)) ? turn : largest(t, c);
       }
     }
-    this->Add(name, std::move(rows), onTriangles);
-    this->Results.back().IsBesideResult = true;
-  };
-  add("Collision", (turns.array() < -largestTurn).cast<double>());
-  add("Focus", (turns.array() > largestTurn).cast<double>());
+  }
+  return largest;
 }
 
 void DerivativesRun::AddResult(

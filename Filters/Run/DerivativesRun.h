@@ -63,9 +63,10 @@ private:
   void AddResult(const char* name, Values ofVertices, const DerivativesSettings& settings);
   void AddParts(const Derivatives& operators, const Values& ofTriangles,
     const DerivativesSettings& settings, const ProgressMonitor& progress);
-  void AddVelocity(Values gradients, bool onTriangles);
-  /// Where fronts meet and begin, by the gradients of times on triangles.
-  void AddMeetings(const Derivatives& operators, const Values& gradients, bool onTriangles);
+  void AddVelocity(Values gradients, const Values& turns, bool onTriangles);
+  /// The divergence of the directions of the gradients of times on triangles, times the root of the control
+  /// area: large where fronts begin, and far below 0 where they meet. On triangles the largest of the corners.
+  Values FindTurns(const Derivatives& operators, const Values& gradients, bool onTriangles) const;
   void Add(const char* name, Values rows, bool onTriangles);
 
   Fingerprint MissingVersion; ///< of the data that MissingRows belong to

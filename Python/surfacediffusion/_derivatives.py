@@ -156,7 +156,8 @@ def conduction_velocity(
     """Compute the velocity of a wave on a surface from its arrival times T: grad T/|grad T|^2.
 
     Times in ms on coordinates in mm give mm/ms = m/s. Where the times do not change, the velocity is
-    not defined and is 0.
+    not defined and is 0. Where fronts meet or begin, the direction is not determined: the speed is NaN there,
+    and velocity and direction are 0.
 
     Parameters
     ----------
@@ -177,7 +178,7 @@ def conduction_velocity(
     -------
     ConductionVelocity
         The pair of `velocity` (n, 3) and `speed` (n,), at the faces with `result_on_faces`, with `direction`
-        and the marks `collision` and `focus` of where it is undetermined. With `error` also `speed_lower`
+        and the marks `collision` and `focus` of where it is undetermined and the speed NaN. With `error` also `speed_lower`
         and `speed_upper`. The smoothness that interpolation assumes is rougher than waves are, so that the
         bands hold more than 90 %.
 
@@ -212,7 +213,7 @@ def conduction_velocity(
             lower = 1.0 / (slowness + BAND_90 * slope_error)
             upper = np.maximum(slowness - BAND_90 * slope_error, 0.0)
             upper = np.where(upper > 0.0, 1.0 / upper, np.inf)
-        undetermined = result.collision | result.focus | np.isnan(speeds) | np.isnan(slope_error)
+        undetermined = np.isnan(speeds) | np.isnan(slope_error)
         result.speed_lower = np.where(undetermined, np.nan, lower)
         result.speed_upper = np.where(undetermined, np.nan, upper)
     return result

@@ -111,6 +111,8 @@ class Derivatives(unittest.TestCase):
         self.assertTrue(found.focus[nearest == 0].all() and not found.focus[nearest > 4].any())
         self.assertTrue(found.collision[x == 30].all() and not found.collision[(abs(x - 30) > 2)].any())
         free = ~found.collision & ~found.focus
+        np.testing.assert_array_equal(np.isnan(found.speed), ~free)
+        np.testing.assert_array_equal(found.velocity[~free], 0.0)
         np.testing.assert_allclose(found.speed[free & (nearest > 4)], 0.6, rtol=0.03)
         np.testing.assert_allclose(np.linalg.norm(found.direction, axis=1)[free], 1.0, atol=1e-9)
 
