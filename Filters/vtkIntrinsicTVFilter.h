@@ -255,13 +255,13 @@ public:
   ///@}
 
   /**
-   * On: lambda is chosen so that the estimated error of the last state of the run is smallest, by the
+   * On (default): FidelityWeight 3, its default, stands for the lambda of the smallest estimated error of
+   * the last state of the run; any other FidelityWeight is used as it is given. It is found by the
    * estimates of vtkFVMHeatFilter::AutomaticFidelity, with the mode, steps and discretisation of the
    * run. A warning reports it if no weight does, as in runs too short to remove the noise. For nine
    * kinds of noise, four signals and four surfaces the error was 1.03 times that of the best lambda
-   * in the median, and at most 1.38 times in nine of ten cases. FidelityWeight is ignored.
-   * AutomaticFidelity has the requirements of SteadyState and needs FidelityNorm L2. Default: off;
-   * with BlurFWHM and FidelityWeight 3, its default, on unless AutomaticBlurFidelity is off.
+   * in the median, and at most 1.38 times in nine of ten cases. lambda is found for convex energies, as
+   * SteadyState has them, with FidelityNorm L2; otherwise FidelityWeight is used as it is given.
    */
   SURFACEDIFFUSION_SWITCH(AutomaticFidelity);
 
@@ -337,9 +337,7 @@ public:
    * shrinkage-thresholding algorithm (MFISTA; A. Beck, M. Teboulle, IEEE Trans. Image Process. 18,
    * 2009). It stops when an iteration changes u by StopTolerance R, which is no bound of the error.
    * BlurFWHM needs Mode SteadyState, FidelityNorm L2 and Discretization Linear.
-   * FidelityWeight 3, the default, then stands for the weight that AutomaticFidelity finds, since
-   * of blurred data a weight of 3 leaves little; see AutomaticBlurFidelity. Any other weight is
-   * used. A warning reports a width outside 2 to 8 mean edge lengths.
+   * See AutomaticFidelity and AutomaticBlurFidelity. A warning reports a width outside 2 to 8 mean edge lengths.
    * A camera blurs in its image, not on the surface: its point spread function differs from H where
    * the surface is oblique.
    */
@@ -354,8 +352,8 @@ public:
   SURFACEDIFFUSION_PROPERTY(BlurSteps, int);
 
   /**
-   * On (default): with BlurFWHM, FidelityWeight 3 stands for the weight that AutomaticFidelity
-   * finds. Off: FidelityWeight is used as it is given. Without BlurFWHM it has no effect.
+   * Off: with BlurFWHM, FidelityWeight is used as it is given, also 3. Default: on. Without BlurFWHM it
+   * has no effect.
    */
   SURFACEDIFFUSION_SWITCH(AutomaticBlurFidelity);
 

@@ -286,15 +286,22 @@ NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
     coordinates = [&](Index i, const Eigen::RowVectorXd& row)
     { return this->Task.Planes->CoordinatesAt(i, row); };
   }
-  NoiseEstimate found =
-    EstimateNoise(assembler, this->Pattern, points, this->Data, range, true, coordinates);
+  const auto estimate = [&](VertexRange vertices)
+  {
+    constexpr Index fewest = 30; // of fewer an estimate, and the risk, are those of the signal
+    NoiseEstimate found;
+    found.IsUndetermined = vertices.Size() < fewest;
+    return found.IsUndetermined
+      ? found
+      : EstimateNoise(assembler, this->Pattern, points, this->Data, vertices, true, coordinates);
+  };
+  NoiseEstimate found = estimate(range);
   const VertexRange all{ 0, this->Inputs.Surface.Mesh().NumberOfVertices() };
   if (found.IsUndetermined && range.Size() < all.Size())
   {
     if (!this->OfAll)
     {
-      this->OfAll =
-        EstimateNoise(assembler, this->Pattern, points, this->Data, all, true, coordinates);
+      this->OfAll = estimate(all);
     }
     found = *this->OfAll;
   }
@@ -330,12 +337,12 @@ ColumnSearch::Noise ColumnSearch::FindNoise(VertexRange range, Notes& notes)
   if (level == 0.0)
   {
     Sentence text = Word::Setting("AutomaticFidelity");
-    text
-      << (estimate.IsUndetermined
-             ? " finds no known value, of a weight other than 0, with enough others around it to "
-               "estimate the noise from, so that known values stay as they are"
-             : " finds no noise in the data, which stay as they are")
-      << " (to set the standard deviation of the noise, use " << Word::Setting("NoiseLevel") << ")";
+    text << (estimate.IsUndetermined ? " finds too few known values, of a weight other than 0, to "
+                                       "estimate the noise from, so "
+                                       "that known values stay as they are"
+                                     : " finds no noise in the data, which stay as they are")
+         << " (to set the standard deviation of the noise, use " << Word::Setting("NoiseLevel")
+         << ")";
     notes.Add(estimate.IsUndetermined ? Notes::Undetermined : Notes::WithoutNoise, text);
   }
   // Noise of more than the differences between neighbours is not white. That of cells is taken for it.

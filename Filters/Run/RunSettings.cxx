@@ -238,7 +238,7 @@ void VisitAutomaticFidelity(
       "principle, Morozov 1966). Constant parts of the data do not count. Each component "
       "of the data that is not coupled with the others and each connected component of the surface "
       "has a weight of its own. "
-      "FidelityWeight is ignored.",
+      "The weight takes the place of FidelityWeight; of total variation, of 3 alone, its default.",
       onlyIf },
     automatic);
   visitor.Number(

@@ -112,7 +112,7 @@ inline const NamedSettings SettingsOfModels[] = { { "curvature", &MakeDefaults<C
     "mask roi directions fixed fidelity" },
   { "intrinsic_tv", &MakeDefaults<TotalVariationSettings>, nullptr, "values", true,
     "mask roi directions fixed fidelity",
-    "fidelity_weight automatic_blur_fidelity automatic_fidelity automatic_blur_fidelity" },
+    "fidelity_weight automatic_fidelity" },
   { "mumford_shah", &MakeDefaults<MumfordShahSettings>, nullptr, "values", true,
     "mask roi directions fixed fidelity",
     "edge_threshold automatic_threshold smoothing_length automatic_threshold" },

@@ -38,9 +38,16 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
 {
   Rewording reworded(visitor,
     { { "Tolerance",
-      { "",
-        "Relative residual at which the iterative solver of a FirstOrder step stops, between 0 "
-        "and 1." } } });
+        { "",
+          "Relative residual at which the iterative solver of a FirstOrder step stops, between 0 "
+          "and 1." } },
+      { "FidelityWeight",
+        { "1/time",
+          "lambda, the weight of the fidelity term lambda chi (f - u), in 1/(unit of time). The "
+          "term "
+          "pulls the result towards the data wherever they are known (chi = 1). 3, the default, "
+          "stands for the weight that AutomaticFidelity finds, if this is on.",
+          "" } } });
   this->DataSettings::Visit(reworded);
   VisitTimeIntegrator(visitor, this->TimeIntegrator, { true, false, true, false, false },
     "Mode=TimeSteps and (((EdgeFunction=TotalVariation or EdgeFunction=Charbonnier or "
@@ -78,15 +85,15 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "PeronaMalikRational: 1/(1 + (s/K)^2). Charbonnier: 1/sqrt(1 + (s/K)^2). "
                    "Weickert: 1 - exp(-3.31488/(s/K)^8). Constant: 1, linear diffusion. "
                    "Perona-Malik and Weickert sharpen edges with a gradient above K; they "
-                   "require Mode TimeSteps, TimeIntegrator FirstOrder and AutomaticFidelity off." },
+                   "require Mode TimeSteps and TimeIntegrator FirstOrder." },
     this->EdgeFunction, WordsOfEdgeFunctions());
   std::vector<const char*> across = WordsOfEdgeFunctions();
   across.insert(across.begin(), "Same");
   visitor.Choice({ "AcrossEdgeFunction", "",
                    "The function g of g2, across the direction: the same as EdgeFunction or "
                    "another one. Another one requires TimeIntegrator FirstOrder.",
-                   "(DirectionArray and (Mode=TimeSteps and TimeIntegrator=FirstOrder and "
-                   "AutomaticFidelity=0)) or AcrossEdgeFunction!=Same" },
+                   "(DirectionArray and (Mode=TimeSteps and TimeIntegrator=FirstOrder)) or "
+                   "AcrossEdgeFunction!=Same" },
     this->AcrossEdgeFunction, across, {});
   visitor.Number({ "Beta", "(R/h)^2",
                    "The regularisation beta of TotalVariation, above 0, in (R/h)^2. Gradients "
@@ -111,12 +118,11 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "L2: lambda (f - u), for Gaussian noise. L1: lambda (f - u)/|f - u|, for "
                    "salt-and-pepper noise: outliers are replaced and the other values keep their "
                    "contrast. With L1 a weight of 1 to 2 is suitable.",
-                   "(BlurFWHM=0 and ((AutomaticFidelity=0 and ColorModel=RGB) or FidelityNorm=L1)) "
-                   "or (BlurFWHM!=0 and FidelityNorm=L1)" },
+                   "(BlurFWHM=0 and ColorModel=RGB) or FidelityNorm=L1" },
     this->FidelityNorm, { "L2", "L1" });
   VisitAutomaticFidelity(visitor, this->AutomaticFidelity, this->NoiseLevel,
-    "(FidelityNorm=L2 and (EdgeFunction=TotalVariation or EdgeFunction=Charbonnier or "
-    "EdgeFunction=Constant) and AcrossEdgeFunction=Same) or AutomaticFidelity=1");
+    "FidelityWeight=3 and FidelityNorm=L2 and (EdgeFunction=TotalVariation or "
+    "EdgeFunction=Charbonnier or EdgeFunction=Constant) and AcrossEdgeFunction=Same");
   visitor.Choice({ "Discretization", "",
                    "Linear: unknowns at the points, as in the paper. CrouzeixRaviart: unknowns "
                    "at the edges of the mesh, which are three times as many. It reproduces the "
@@ -133,12 +139,21 @@ void TotalVariationSettings::Visit(SettingVisitor& visitor)
                    "Mode=SteadyState or TimeIntegrator=Implicit" },
     this->StopTolerance, SettingRange::OpenUnitInterval());
   this->Blur.Visit(visitor);
-  visitor.Switch({ "AutomaticBlurFidelity", "",
-                   "On: FidelityWeight 3, its default, stands with BlurFWHM for the weight that "
-                   "AutomaticFidelity finds. Off: FidelityWeight is used as it is given.",
-                   "BlurFWHM!=0 and AutomaticFidelity=0 and FidelityWeight=3" },
+  visitor.Switch(
+    { "AutomaticBlurFidelity", "",
+      "Off: with BlurFWHM, FidelityWeight is used as it is given, also 3, its default.",
+      "BlurFWHM!=0 and AutomaticFidelity=1 and FidelityWeight=3" },
     this->AutomaticBlurFidelity);
   this->Color.Visit(visitor);
+}
+
+bool TotalVariationSettings::FindsFidelity() const
+{
+  return this->AutomaticFidelity && this->FidelityWeight == DefaultFidelityWeight &&
+    (this->AutomaticBlurFidelity || !this->Blur.IsOn()) &&
+    PropertiesOf(this->EdgeFunction).Convex && this->AcrossEdgeFunction == 0 &&
+    (this->AlongDiffusivity > 0.0 || this->AcrossDiffusivity > 0.0) &&
+    this->FidelityNorm == SurfaceDiffusion::FidelityNorm::L2;
 }
 
 void TotalVariationSettings::CheckTogether(const FieldSummary* fields, Problems& problems) const
@@ -158,12 +173,6 @@ void TotalVariationSettings::CheckTogether(const FieldSummary* fields, Problems&
     Sentence purpose = Word::Setting("TimeIntegrator");
     this->RequireConvexEnergy(
       purpose << " " << Word::Choice("TimeIntegrator", this->TimeIntegrator, "Implicit"), problems);
-  }
-  if (this->FindsFidelity())
-  {
-    this->RequireConvexEnergy(Word::Setting("AutomaticFidelity"), problems);
-    RequireChoice("FidelityNorm", this->FidelityNorm, SurfaceDiffusion::FidelityNorm::L2, "L2",
-      Word::Setting("AutomaticFidelity"), problems);
   }
   if (fields && !fields->Directions && this->AcrossEdgeFunction != 0)
   {

@@ -43,13 +43,12 @@ struct TotalVariationSettings : DataSettings
   double EdgeThreshold = 0.1;
   SurfaceDiffusion::ChannelCoupling ChannelCoupling = SurfaceDiffusion::ChannelCoupling::Joint;
   SurfaceDiffusion::FidelityNorm FidelityNorm = SurfaceDiffusion::FidelityNorm::L2;
-  bool AutomaticFidelity = false;
+  bool AutomaticFidelity = true; ///< the default weight stands for one that is found
   double NoiseLevel = 0.0;
   SurfaceDiffusion::Discretization Discretization = SurfaceDiffusion::Discretization::Linear;
   double StopTolerance = 1e-4;
   BlurSettings Blur;
-  bool AutomaticBlurFidelity =
-    true; ///< with a blur, the default weight stands for one that is found
+  bool AutomaticBlurFidelity = true; ///< the same with a blur
   ColorSettings Color;
 
   static constexpr double DefaultFidelityWeight = 3.0;
@@ -76,13 +75,8 @@ protected:
   void CheckTogether(const FieldSummary* fields, Problems& problems) const override;
 
 private:
-  /// Whether lambda is found; with a blur that is the default.
-  bool FindsFidelity() const
-  {
-    return this->AutomaticFidelity ||
-      (this->Blur.IsOn() && this->AutomaticBlurFidelity &&
-        this->FidelityWeight == DefaultFidelityWeight);
-  }
+  /// Whether lambda is found: of convex energies with FidelityNorm L2, at its default.
+  bool FindsFidelity() const;
   std::vector<const char*> FindSettingsInRange() const;
   void CheckBlur(Problems& problems) const;
   void CheckRegularizer(Problems& problems) const;

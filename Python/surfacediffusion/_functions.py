@@ -378,8 +378,8 @@ def intrinsic_tv(surface: SurfaceLike, values: ArrayLike, **properties: Any) -> 
     energy, integral of abs(grad u) + lambda/2 chi (f - u)^2. With ``regularizer="TGV"``, too, ramps
     and roofs keep their slopes, which total variation turns into stairs. With `blur_fwhm`, too, it restores data
     that were blurred on the surface: H u stands in place of u in the second term, where H is the
-    blur. Then lambda is found as with `automatic_fidelity`, unless `fidelity_weight` or
-    `automatic_fidelity` is given. `color_model` describes colours, three columns, by brightness and two axes of colour, or by
+    blur. lambda is the one of the smallest estimated error (`automatic_fidelity`), unless `fidelity_weight` is
+    given, the energy is not convex or `fidelity_norm` is "L1". `color_model` describes colours, three columns, by brightness and two axes of colour, or by
     brightness and chromaticity; both restore colours whose hue is noisy better than the default.
 
     Parameters

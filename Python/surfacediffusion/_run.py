@@ -224,8 +224,7 @@ class Input(Given):
 
 #: Settings that are found from the data unless they are given, and the switches of that.
 _FOUND = {
-    "intrinsic_tv": {"fidelity_weight": "automatic_blur_fidelity",
-                     "automatic_fidelity": "automatic_blur_fidelity"},
+    "intrinsic_tv": {"fidelity_weight": "automatic_fidelity"},
     "segment": {"means": "automatic_means", "fidelity_weight": "automatic_fidelity"},
     "interpolate": {"smoothing": "automatic_smoothing"},
     "mumford_shah": {"edge_threshold": "automatic_threshold", "smoothing_length": "automatic_threshold"},

@@ -94,6 +94,7 @@ TEST(Run, AutomaticFidelityIsNearlyTheBestWeightOfTheModelThatRuns)
         settings.Mode = mode;
         settings.Discretization = discretization;
         settings.AutomaticFidelity = true;
+        settings.FidelityWeight = TotalVariationSettings::DefaultFidelityWeight;
         double found = 0.0;
         const double error = errorOf(found);
         settings.AutomaticFidelity = false;
@@ -199,8 +200,8 @@ TEST(Run, AutomaticFidelityWarnsOfTooFewValues)
     WarningLog log;
     const std::vector<Sentence> warnings = log.Report(run.FindWarnings(Alone));
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_NE(warnings[0].Text().find("AutomaticFidelity finds no known value, of a weight other "
-                                      "than 0, with enough others around it"),
+    EXPECT_NE(warnings[0].Text().find("AutomaticFidelity finds too few known values, of a weight "
+                                      "other than 0, to estimate the noise from"),
       std::string::npos)
       << warnings[0].Text();
   }

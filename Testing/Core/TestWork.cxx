@@ -135,6 +135,7 @@ TEST(Work, OfLaggedModelsIsOneFactorisationPerStep)
 {
   TotalVariationSettings variation;
   variation.TimeIntegrator = TimeIntegrator::FirstOrder;
+  variation.AutomaticFidelity = false;
   EXPECT_EQ(FactorizationsOf(variation), (Counts{ { SolverPurpose::Step, NumberOfSteps } }));
   EXPECT_EQ(FactorizationsOf(TensorDiffusionSettings()),
     (Counts{ { SolverPurpose::Step, NumberOfSteps } }));

@@ -213,6 +213,7 @@ TEST(ReportedValues, EachBlockHasItsFidelityWeightAsFieldData)
   vtkNew<vtkIntrinsicTVFilter> filter;
   filter->SetInputData(blocks);
   filter->SetNumberOfTimeSteps(1);
+  filter->AutomaticFidelityOff();
   EXPECT_EQ(weightOf(filter, 0, "EffectiveFidelityWeight"), -1.0); // one weight for all
   filter->AutomaticFidelityOn();
   const double first = weightOf(filter, 0, "EffectiveFidelityWeight");

@@ -75,7 +75,7 @@ DEFAULTS = {
         **DATA, "TimeIntegrator": "FirstOrder", "FidelityWeight": 3.0, "InitialFill": "Mean", "Tolerance": 1e-3, "Mode": "TimeSteps",
         "Regularizer": "TV", "TGVLength": 2.0, "EdgeFunction": "TotalVariation", "AcrossEdgeFunction": "Same", "Beta": 1e-6,
         "EdgeThreshold": 0.1, "ChannelCoupling": "Joint", "FidelityNorm": "L2",
-        "AutomaticFidelity": False, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4,
+        "AutomaticFidelity": True, "NoiseLevel": 0.0, "BlurFWHM": 0.0, "BlurSteps": 4,
         "AutomaticBlurFidelity": True, "Discretization": "Linear", "StopTolerance": 1e-4,
         "ColorModel": "RGB", "ChromaWeight": 0.2, "ChromaticityExponent": 1.0,
         "ChromaticityWeight": 1.0, "LinearLight": False},

@@ -143,7 +143,7 @@ std::vector<std::int64_t> RankCells(const CellTransfer& cells, const std::vector
     {
       Index vertex = 0;
       cells.ForEachVertexOf(c, [&](Index i) { vertex = i; });
-      const auto row = [&](Index i) { return data.Given.row(i).sum(); };
+      const auto row = [&](Index i) { return data.Missing[i] ? 0.0 : data.Given.row(i).sum(); };
       order.emplace_back(partOf[static_cast<std::size_t>(vertex)], cells.MeanOver(c, row), c);
     }
   }

@@ -39,8 +39,7 @@ def add_denoise(commands):
 
 
 def denoise(arguments, report):
-    options = given(fidelity_weight=arguments.weight) or {
-        "automatic_fidelity": True, "noise_level": arguments.noise or 0.0}
+    options = given(fidelity_weight=arguments.weight, noise_level=arguments.noise)
     model = {"rgb": "RGB", "opponent": "Opponent",
              "chromaticity": "ChromaticityBrightness"}[arguments.colors]
     found = []
