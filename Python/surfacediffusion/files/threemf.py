@@ -20,7 +20,7 @@ UNITS = {"um": (0.001, "micron"), "mm": (1.0, "millimeter"), "cm": (10.0, "centi
 
 _MOST_BYTES = 2 << 30  # of XML
 _MOST_POINTS = 20_000_000  # and triangles
-_MOST_PLACED = 100_000  # objects and components
+_MOST_PLACED = 20_000  # objects and components
 _LEVELS = 8
 _CHUNK = 1 << 20
 _MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
@@ -116,7 +116,7 @@ class _Reader:
     def __init__(self, data):
         self.archive = zipfile.ZipFile(io.BytesIO(data))
         self.parts, self.left = {}, [_MOST_BYTES]
-        self.placed = self.count = 0
+        self.placed = self.count = self.size = 0
         self.points, self.corners, self.colors = [], [], []
 
     def part(self, path):
@@ -174,8 +174,9 @@ class _Reader:
                 points = points @ transform[:3] + transform[3]
                 if np.linalg.det(transform[:3]) < 0:
                     corners = corners[:, [0, 2, 1]]
-        self.corners.append(corners + sum(map(len, self.points)))
+        self.corners.append(corners + self.size)
         self.points.append(points)
+        self.size += len(points)
         self.colors.append([_colors_of(part, thing, entry) for entry in thing.colors])
 
 
@@ -193,9 +194,9 @@ def read(data: bytes):
     model = reader.part(root)
     names, of_face = [], []
     for path, key, transform, number in model.items:
-        before = sum(map(len, reader.corners))
+        before = len(reader.corners)
         reader.place(path or root, key, [transform])
-        of_face.append(np.full(sum(map(len, reader.corners)) - before, len(names)))
+        of_face.append(np.full(sum(map(len, reader.corners[before:])), len(names)))
         names.append(reader.part(path or root).objects[key].name or number)
     if not reader.corners:
         raise ValueError("its build has no mesh; allowed: at least one item")
