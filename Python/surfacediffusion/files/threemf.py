@@ -8,6 +8,7 @@ from __future__ import annotations
 import io
 import posixpath
 import zipfile
+from array import array
 from dataclasses import dataclass, field
 from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
@@ -42,8 +43,8 @@ class Objects:
 class _Object:
     name: str = ""
     default: tuple = ("", "")  # group of colours and number of all triangles without their own
-    points: list = field(default_factory=list)
-    corners: list = field(default_factory=list)
+    points: array = field(default_factory=lambda: array("d"))
+    corners: array = field(default_factory=lambda: array("q"))
     colors: list = field(default_factory=list)  # per triangle: group and three numbers
     components: list = field(default_factory=list)
 
@@ -74,9 +75,9 @@ class _Part:
     def _start(self, name, values):
         kind = name.rsplit("}", 1)[-1]
         if kind == "vertex" and self._object is not None:
-            self._object.points.append((values["x"], values["y"], values["z"]))
+            self._object.points.extend((float(values["x"]), float(values["y"]), float(values["z"])))
         elif kind == "triangle" and self._object is not None:
-            self._object.corners.append((values["v1"], values["v2"], values["v3"]))
+            self._object.corners.extend((int(values["v1"]), int(values["v2"]), int(values["v3"])))
             first = values.get("p1")
             self._object.colors.append(None if first is None else (
                 values.get("pid", self._object.default[0]), first, values.get("p2", first), values.get("p3", first)))
@@ -155,7 +156,7 @@ class _Reader:
             raise ValueError(f"there is no object {key!r}")
         thing = part.objects[key]
         self.placed += 1
-        self.count += max(len(thing.points), len(thing.corners))
+        self.count += max(len(thing.points), len(thing.corners)) // 3
         if level > _LEVELS or self.placed > _MOST_PLACED or self.count > _MOST_POINTS:
             raise ValueError(f"its objects are made of too many others; allowed: {_MOST_POINTS:,} points in all")
         if thing.corners:
@@ -165,7 +166,7 @@ class _Reader:
 
     def _add(self, part, thing, transforms):
         points = np.array(thing.points, dtype=float).reshape(-1, 3)
-        corners = np.array(thing.corners, dtype=np.int64)
+        corners = np.array(thing.corners, dtype=np.int64).reshape(-1, 3)
         if corners.min() < 0 or corners.max() >= len(points):
             bad = corners.min() if corners.min() < 0 else corners.max()
             raise ValueError(f"a face refers to point {bad}; allowed: 0 to {len(points) - 1}")
