@@ -121,6 +121,10 @@ Index DropTwins(Facets& facets)
       (IsEven(facets.Corners[t]) ? even : odd).push_back(t);
     }
   }
+  if (twins.empty())
+  {
+    return 0;
+  }
   std::vector<char> stays(firsts.size(), 1);
   std::vector<char> isSheet(firsts.size(), 0); // as often one way as the other
   for (auto& [first, sets] : twins)
