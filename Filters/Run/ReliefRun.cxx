@@ -46,9 +46,8 @@ std::vector<Sentence> DescribeRelief(const Relief& relief, const Vector& wanted)
   if (relief.OverlappingBodies > 0)
   {
     text = Sentence();
-    text << relief.OverlappingBodies
-         << " pairs of bodies overlap: slicers unite them, and what is inside another body has no "
-            "relief";
+    text << "pairs of bodies that overlap: " << relief.OverlappingBodies
+         << "; slicers unite them, and what is inside another body has no relief";
     sentences.push_back(text);
   }
   if (relief.CrossingTrianglesBefore > 0)

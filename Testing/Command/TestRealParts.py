@@ -124,7 +124,7 @@ class Solids(CommandTest):
 
     def test_bodies_that_overlap_are_counted(self):
         report = self.texture(parts.together(parts.box(), parts.box(place=(12, 5, 3))), "out.stl",
-                              warning="1 pairs of bodies overlap")
+                              warning="pairs of bodies that overlap: 1; slicers unite them")
         self.assertEqual((report["overlaps"], len(report["bodies"])), (1, 2))
         self.check_closed(report, 2)
 

@@ -173,7 +173,7 @@ class ReliefOnBodies(unittest.TestCase):
 
     def test_is_left_out_inside_another_body(self):
         fine, result, said = self.relief(parts.together(parts.box(), parts.box((10, 10, 10), (19, 7, 7))), 0.25, 1.0)
-        self.assertIn("1 pairs of bodies overlap: slicers unite them", said)
+        self.assertIn("pairs of bodies that overlap: 1; slicers unite them", said)
         inside = sd.bodies(fine).inside
         x = fine.points
         np.testing.assert_array_equal(inside, ((x > 1e-3) & (x < 24 - 1e-3)).all(axis=1)

@@ -39,6 +39,7 @@ public:
     {
       this->Cut({ faces(t, 0), faces(t, 1), faces(t, 2) });
     }
+    this->DropPinches();
     std::array<std::vector<Face>, 2> solids;
     for (const Face& face : this->Rest)
     {
@@ -147,8 +148,7 @@ private:
     return { this->TopOf[face[0]], this->TopOf[face[1]], this->TopOf[face[2]] };
   }
 
-  /// Between before and after, along the edges where the raised triangles end.
-  void AddWalls(std::array<std::vector<Face>, 2>& solids) const
+  TriangleSides SidesOfRaised() const
   {
     Triangles rows(static_cast<Eigen::Index>(this->Raised.size()), 3);
     for (std::size_t t = 0; t < this->Raised.size(); ++t)
@@ -156,6 +156,35 @@ private:
       rows.row(static_cast<Eigen::Index>(t)) << this->Raised[t][0], this->Raised[t][1],
         this->Raised[t][2];
     }
+    return SortSides(rows);
+  }
+
+  /// Raised triangles on both sides of an edge that stays would have it in common before and after,
+  /// which is an edge of four triangles: they are no longer raised.
+  void DropPinches()
+  {
+    const auto stays = [&](Index i) { return this->TopOf[i] == i; };
+    std::vector<char> isDropped(this->Raised.size(), 0);
+    ForEachEdge(this->SidesOfRaised(),
+      [&](auto first, auto last)
+      {
+        if (last - first > 1 && stays(first->Low) && stays(first->High))
+        {
+          std::for_each(
+            first, last, [&](const TriangleSide& side) { isDropped[side.Triangle] = 1; });
+        }
+      });
+    std::vector<Face> kept;
+    for (std::size_t t = 0; t < this->Raised.size(); ++t)
+    {
+      (isDropped[t] ? this->Rest : kept).push_back(this->Raised[t]);
+    }
+    this->Raised.swap(kept);
+  }
+
+  /// Between before and after, along the edges where the raised triangles end.
+  void AddWalls(std::array<std::vector<Face>, 2>& solids) const
+  {
     const auto add = [](std::vector<Face>& solid, const Face& face)
     {
       if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0])
@@ -163,7 +192,7 @@ private:
         solid.push_back(face);
       }
     };
-    ForEachEdge(SortSides(rows),
+    ForEachEdge(this->SidesOfRaised(),
       [&](auto first, auto last)
       {
         if (last - first != 1)
