@@ -264,74 +264,84 @@ std::vector<Index> FindParents(const Points& points, const Triangles& faces, con
   return parents;
 }
 
+/// The closed bodies of a surface, and what is near others.
+struct ClosedBodies
+{
+  ClosedBodies(const Points& points, const Triangles& faces, const Bodies& found)
+    : OfTriangle(found.OfTriangle)
+    , OfVertex(static_cast<std::size_t>(points.rows()), -1)
+    , Bounds(found.Table.size())
+  {
+    for (Index t = 0; t < static_cast<Index>(faces.rows()); ++t)
+    {
+      Index& body = this->OfTriangle[static_cast<std::size_t>(t)];
+      for (int a = 0; a < 3 && body >= 0; ++a)
+      {
+        this->OfVertex[static_cast<std::size_t>(faces(t, a))] = body;
+        if (found.Table[static_cast<std::size_t>(body)].IsClosed)
+        {
+          this->Bounds[static_cast<std::size_t>(body)].extend(Corner(points, faces, t, a));
+        }
+      }
+      body = body >= 0 && found.Table[static_cast<std::size_t>(body)].IsClosed ? body : -1;
+    }
+    this->Boxes = TriangleTree(this->Bounds);
+  }
+
+  /// Whether a place meets the box around another body.
+  bool IsNearOther(const Box& place, Index own) const
+  {
+    bool isNear = false;
+    this->Boxes.Visit([&](const Box& box) { return !isNear && box.intersects(place); },
+      [&](Index body)
+      { isNear = isNear || (body != own && this->Bounds[body].intersects(place)); });
+    return isNear;
+  }
+
+  std::vector<Index> OfTriangle; ///< -1 for those of others
+  std::vector<Index> OfVertex; ///< of all bodies
+  std::vector<Box> Bounds;
+  TriangleTree Boxes;
+};
+
 /// Marks what is inside other bodies, and counts pairs that overlap.
 void FindOverlaps(
   const Points& points, const Triangles& faces, const ParallelFor& parallel, Bodies& found)
 {
-  std::vector<Index> closed = found.OfTriangle;
-  std::vector<Box> bounds(found.Table.size());
-  std::vector<Index> bodyOf(static_cast<std::size_t>(points.rows()), -1);
-  for (Index t = 0; t < static_cast<Index>(faces.rows()); ++t)
-  {
-    Index& body = closed[static_cast<std::size_t>(t)];
-    body = body >= 0 && found.Table[static_cast<std::size_t>(body)].IsClosed ? body : -1;
-    for (int a = 0; a < 3 && found.OfTriangle[static_cast<std::size_t>(t)] >= 0; ++a)
-    {
-      bodyOf[static_cast<std::size_t>(faces(t, a))] = found.OfTriangle[static_cast<std::size_t>(t)];
-      if (body >= 0)
-      {
-        bounds[static_cast<std::size_t>(body)].extend(Corner(points, faces, t, a));
-      }
-    }
-  }
-  const TriangleTree boxes(bounds);
-  const auto isNearOther = [&](const Box& place, Index own)
-  {
-    bool isNear = false;
-    boxes.Visit([&](const Box& box) { return !isNear && box.intersects(place); },
-      [&](Index body) { isNear = isNear || (body != own && bounds[body].intersects(place)); });
-    return isNear;
-  };
-  const Windings windings(points, faces, closed);
-  std::vector<Index> within(bodyOf.size(), -1);
+  const ClosedBodies closed(points, faces, found);
+  const Windings windings(points, faces, closed.OfTriangle);
+  std::vector<Index> within(closed.OfVertex.size(), -1);
   ForEach(parallel, static_cast<Index>(points.rows()),
     [&](Index i)
     {
-      const Index own = bodyOf[static_cast<std::size_t>(i)];
+      const Index own = closed.OfVertex[static_cast<std::size_t>(i)];
       const Vector3 place = points.row(i).transpose();
-      if (own < 0 || !isNearOther(Box(place), own))
+      if (own >= 0 && closed.IsNearOther(Box(place), own))
       {
-        return;
+        within[static_cast<std::size_t>(i)] = windings.Around(place, own);
       }
-      within[static_cast<std::size_t>(i)] = windings.Around(place, own);
     });
   std::set<std::pair<Index, Index>> pairs;
-  const auto add = [&](Index a, Index b)
-  {
-    if (a != b && found.Table[a].IsClosed && found.Table[b].IsClosed)
-    {
-      pairs.emplace(std::minmax(a, b));
-    }
-  };
   for (std::size_t i = 0; i < within.size(); ++i)
   {
     found.IsInside[i] = within[i] >= 0;
-    if (within[i] >= 0)
+    if (within[i] >= 0 && found.Table[static_cast<std::size_t>(closed.OfVertex[i])].IsClosed)
     {
-      add(bodyOf[i], within[i]);
+      pairs.emplace(std::minmax(closed.OfVertex[i], within[i]));
     }
   }
   for (Index t = 0; t < static_cast<Index>(faces.rows()); ++t)
   {
-    for (int a = 0; a < 3 && closed[static_cast<std::size_t>(t)] >= 0; ++a)
+    const Index own = closed.OfTriangle[static_cast<std::size_t>(t)];
+    for (int a = 0; a < 3 && own >= 0; ++a)
     {
       const Vector3 from = Corner(points, faces, t, a);
       const Vector3 to = Corner(points, faces, t, (a + 1) % 3);
-      const Index own = closed[static_cast<std::size_t>(t)];
       if (faces(t, a) < faces(t, (a + 1) % 3) &&
-        isNearOther(Box(from.cwiseMin(to), from.cwiseMax(to)), own))
+        closed.IsNearOther(Box(from.cwiseMin(to), from.cwiseMax(to)), own))
       {
-        windings.VisitBetween(from, to, own, [&](Index body) { add(own, body); });
+        windings.VisitBetween(
+          from, to, own, [&](Index body) { pairs.emplace(std::minmax(own, body)); });
       }
     }
   }

@@ -107,50 +107,58 @@ bool IsEven(const std::array<Index, 3>& corners)
   return int{ a < b } + int{ b < c } + int{ c < a } == 2;
 }
 
+/// Of triangles with the same corners, which one stays.
+struct Twins
+{
+  explicit Twins(const Facets& facets, const std::vector<Index>& firsts)
+    : Stays(firsts.size(), 1)
+    , IsSheet(firsts.size(), 0)
+  {
+    std::map<Index, std::array<std::vector<Index>, 2>> sets; // of the first, by orientation
+    const auto add = [&](Index first, Index t)
+    { sets[first][IsEven(facets.Corners[t]) ? 1 : 0].push_back(t); };
+    for (Index t = 0; t < static_cast<Index>(firsts.size()); ++t)
+    {
+      if (firsts[t] != t)
+      {
+        add(firsts[t], t);
+        this->Stays[t] = 0;
+      }
+    }
+    for (auto& [first, both] : sets)
+    {
+      add(first, first);
+      const auto& [odd, even] = both;
+      const auto& more = even.size() > odd.size() ? even : odd;
+      const bool isSheet = odd.size() == even.size();
+      const Index kept = isSheet ? first : *std::min_element(more.begin(), more.end());
+      this->Stays[first] = 0;
+      this->Stays[kept] = 1;
+      this->IsSheet[kept] = isSheet;
+    }
+  }
+
+  std::vector<char> Stays;
+  std::vector<char> IsSheet; ///< as often one way as the other
+};
+
 /// Leave out triangles with the same corners as others. Their number.
 Index DropTwins(Facets& facets)
 {
   const Triangles rows = facets.Rows();
   const std::vector<Index> firsts = FindFirsts(rows);
-  std::map<Index, std::array<std::vector<Index>, 2>> twins; // of the first, by orientation
-  for (Index t = 0; t < static_cast<Index>(firsts.size()); ++t)
-  {
-    if (firsts[t] != t)
-    {
-      auto& [odd, even] = twins[firsts[t]];
-      (IsEven(facets.Corners[t]) ? even : odd).push_back(t);
-    }
-  }
-  if (twins.empty())
+  const Twins twins(facets, firsts);
+  if (std::all_of(twins.Stays.begin(), twins.Stays.end(), [](char stays) { return stays != 0; }))
   {
     return 0;
   }
-  std::vector<char> stays(firsts.size(), 1);
-  std::vector<char> isSheet(firsts.size(), 0); // as often one way as the other
-  for (auto& [first, sets] : twins)
-  {
-    auto& [odd, even] = sets;
-    (IsEven(facets.Corners[first]) ? even : odd).push_back(first);
-    for (const auto& set : sets)
-    {
-      for (const Index t : set)
-      {
-        stays[t] = 0;
-      }
-    }
-    const auto& more = even.size() > odd.size() ? even : odd;
-    const Index kept =
-      odd.size() == even.size() ? first : *std::min_element(more.begin(), more.end());
-    stays[kept] = 1;
-    isSheet[kept] = odd.size() == even.size();
-  }
   TriangleSides sides = SortSides(rows);
   sides.erase(std::remove_if(sides.begin(), sides.end(),
-                [&](const TriangleSide& side) { return !stays[side.Triangle]; }),
+                [&](const TriangleSide& side) { return !twins.Stays[side.Triangle]; }),
     sides.end());
   DisjointSets sheets(static_cast<Index>(firsts.size()));
   std::vector<Index> votes(firsts.size(), 0); // for an inner wall
-  const auto isSide = [&](const TriangleSide& side) { return isSheet[side.Triangle] != 0; };
+  const auto isSide = [&](const TriangleSide& side) { return twins.IsSheet[side.Triangle] != 0; };
   ForEachEdge(sides,
     [&](auto first, auto last)
     {
@@ -174,7 +182,7 @@ Index DropTwins(Facets& facets)
     }
   }
   return facets.Keep(
-    [&](Index t) { return stays[t] && !(isSheet[t] && votes[sheets.Find(t)] > 0); });
+    [&](Index t) { return twins.Stays[t] && !(twins.IsSheet[t] && votes[sheets.Find(t)] > 0); });
 }
 
 /// Where a place is along the line from a to b, from 0 to 1, if it is on that to the tolerance and
