@@ -43,6 +43,13 @@ std::vector<Sentence> DescribeRelief(const Relief& relief, const Vector& wanted)
       << " triangles have the same corners as others, and count once: printing wants each one once";
     sentences.push_back(text);
   }
+  if (relief.OverlappingBodies > 0)
+  {
+    text = Sentence();
+    text << "pairs of bodies that overlap: " << relief.OverlappingBodies
+         << "; slicers unite them, and what is inside another body has no relief";
+    sentences.push_back(text);
+  }
   if (relief.CrossingTrianglesBefore > 0)
   {
     text = Sentence();
@@ -147,6 +154,7 @@ void ReliefRun::Update(const BlockInput& input, Settings& given, const ProgressM
   const Relief relief =
     MakeRelief(surface.Points(), triangles, heights, this->Parallel, progress.Part(0.1, 1.0));
   this->Sentences = DescribeRelief(relief, heights);
+  this->Walls = relief.Walls;
   this->ListResults(triangles, relief);
   this->Complete(input, settings);
 }

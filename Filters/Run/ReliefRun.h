@@ -43,6 +43,9 @@ public:
   /// The row of the input's triangles and whether the relief has it the other way round.
   const std::vector<char>& TurnedTriangles() const { return this->Turned; }
 
+  /// Per point, see FindWalls(); infinite for points that others represent.
+  const std::vector<double>& PointWalls() const { return this->Walls; }
+
 private:
   std::vector<Warning> FindOwnWarnings() const override;
   Vector MakeHeights(
@@ -51,6 +54,7 @@ private:
 
   std::vector<Sentence> Sentences;
   std::vector<char> Turned;
+  std::vector<double> Walls;
 };
 
 } // namespace SurfaceDiffusion

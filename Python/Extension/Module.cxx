@@ -225,7 +225,8 @@ NB_MODULE(_core, m)
       "triangles"_a, "coordinates"_a, "closed"_a, "progress"_a.none())
     .def("find_disk", &PythonRuns::FindDisk, "surface"_a, "settings"_a, "names"_a, "points"_a,
       "triangles"_a, "coordinates"_a, "radius"_a, "progress"_a.none())
-    .def("turned_triangles", &PythonRuns::TurnedTriangles, "surface"_a);
+    .def("turned_triangles", &PythonRuns::TurnedTriangles, "surface"_a)
+    .def("walls", &PythonRuns::Walls, "surface"_a);
   BindShapeFunctions(m);
   BindPieceFunctions(m);
   BindResamplingFunctions(m);

@@ -273,4 +273,11 @@ nb::object PythonRuns::TurnedTriangles(std::size_t surface) const
   return NewArray(std::move(rows));
 }
 
+nb::object PythonRuns::Walls(std::size_t surface) const
+{
+  const auto* const relief = dynamic_cast<const ReliefRun*>(&this->RunOf(surface));
+  std::vector<double> walls = relief ? relief->PointWalls() : std::vector<double>();
+  return NewArray(std::move(walls));
+}
+
 } // namespace SurfaceDiffusion

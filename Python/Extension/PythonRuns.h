@@ -59,6 +59,8 @@ public:
     const DoubleArray& coordinates, double radius, const nanobind::object& progress);
   /// Of relief: the rows of the triangles of a surface that the relief has turned.
   nanobind::object TurnedTriangles(std::size_t surface) const;
+  /// Of relief: the thickness of the wall at each point; empty for other runs.
+  nanobind::object Walls(std::size_t surface) const;
 
 private:
   /// The settings, checked together with the inputs. Throws InputError and nanobind::value_error.

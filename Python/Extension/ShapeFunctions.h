@@ -7,7 +7,7 @@
 namespace SurfaceDiffusion
 {
 
-/// The function of Python that bisects the edges of a surface: refine().
+/// The functions of Python for parts: refine(), weld(), bodies().
 void BindShapeFunctions(nanobind::module_& m);
 
 /// Those of blocks and pieces: match_points(), number_places(), and what is said about them.

@@ -47,6 +47,8 @@
 `resample`            values from sphere to sphere, by the weights of a `Resampler`
 `refine`              shorter edges, for the large triangles of CAD files
 `relief`              values as relief, for printing
+`weld`                one point per place, T-junctions joined, repeated facets once
+`bodies`              the solids of a surface, and whether it is closed, manifold and oriented
 `on_faces`            where arrays are if there are as many points as faces; `on_points` alike
 ===================== ============================================================================
 
@@ -68,7 +70,8 @@ import warnings as _warnings
 from importlib.metadata import version as _version
 
 from . import (
-    _core, _derivatives, _distance, _fields, _functions, _operators, _paths, _resampling, _result, _scales, _steps)
+    _core, _derivatives, _distance, _fields, _functions, _operators, _paths, _resampling, _result, _scales, _solids,
+    _steps)
 from ._derivatives import *  # noqa: F403
 from ._distance import *  # noqa: F403
 from ._fields import *  # noqa: F403
@@ -83,6 +86,7 @@ from ._result import *  # noqa: F403
 from ._run import States, SurfaceDiffusionWarning
 from ._scales import *  # noqa: F403
 from ._shape import ReliefResult, relief
+from ._solids import *  # noqa: F403
 from ._steps import *  # noqa: F403
 from ._surface import Surface, on_faces, on_points, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
@@ -103,6 +107,7 @@ __all__ += _paths.__all__
 __all__ += _resampling.__all__
 __all__ += _result.__all__
 __all__ += _scales.__all__
+__all__ += _solids.__all__
 __all__ += _steps.__all__
 
 if hasattr(_os, "register_at_fork"):

@@ -276,7 +276,7 @@ def run_once(
         runner.call(run.update, [given.core], runner.settings, reporter.callable)
         outputs = read_outputs(run.outputs(0), functools.partial(runner.call, run.write, 0), given)
         found = {"mean_edge_length": run.numbers()["MeanEdgeLength"][0][0], "warnings": runner.warnings(run),
-                 "turned": run.turned_triangles(0)}
+                 "turned": run.turned_triangles(0), "walls": run.walls(0)}
         reporter.finish_part()  # last, because the callable may use the run
     warn(found["warnings"])
     listed.extend(outputs)

@@ -39,6 +39,8 @@ class ReliefResult:
         The triangles that cross others, before and after the relief.
     smallest_wall : float
         The smallest distance between two opposite sides; infinite if there are none.
+    walls : ndarray, shape (n,)
+        The distance from each point to the opposite side; infinite where there is none.
     warnings : list of str
         Everything that was also given as a Python warning.
     """
@@ -52,6 +54,7 @@ class ReliefResult:
     crossing_triangles_before: int
     crossing_triangles: int
     smallest_wall: float
+    walls: NDArray[np.float64] = field(repr=False)
     warnings: list[str] = field(repr=False)
 
 
@@ -99,7 +102,8 @@ def relief(
     A point moves by at most half the radius of the largest ball that touches the surface there and
     is empty, on the side to which it moves: in the middle of a wall this is a quarter of its
     thickness, so that relief of up to 10 % of the thickness is not changed there. Near inner edges
-    relief fades over twice its height. Points on edges of one triangle, and of three or more, stay.
+    relief fades over twice its height. Points on edges of one triangle, and of three or more, stay, and so
+    do those inside another closed body.
     The relief is lowered further where triangles would still cross.
 
     Examples
@@ -122,5 +126,6 @@ def relief(
     triangles[found["turned"]] = triangles[found["turned"]][:, [0, 2, 1]]
     of_name = {output.name: output.values for output in outputs}
     return ReliefResult(
-        Surface(of_name.pop("Points"), triangles), of_name.pop("ReliefHeight"), warnings=found["warnings"],
+        Surface(of_name.pop("Points"), triangles), of_name.pop("ReliefHeight"), walls=found["walls"],
+        warnings=found["warnings"],
         **{snake_case(name): value for name, value in of_name.items()})

@@ -20,6 +20,8 @@ import samples
 from nibabel.gifti.util import gifti_encoding_codes
 from samples import HAS_VTK, N, NOISE, SMOOTH, run
 
+from surfacediffusion.files.export import export
+
 MUTANTS = 700
 SECONDS_EACH = 15
 MEMORY = 4 << 30
@@ -55,6 +57,7 @@ def write_good_files(folder):
     path("binary.ply").write_bytes(samples.ply_bytes())
     path("text.ply").write_bytes(samples.ply_bytes(binary=False))
     path("a.stl").write_bytes(samples.stl_bytes())
+    export(path("a.3mf"), samples.POINTS, samples.FACES, np.arange(3 * N, dtype=np.uint8).reshape(N, 3))
     path("gz.func.gii.gz").write_bytes(gzip.compress(path("a.func.gii").read_bytes()))
     if HAS_VTK:
         samples.write_vtk(path("a.vtk"))

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 import surfacediffusion as sd
-from surfacediffusion.command.printing import welded
 from surfacediffusion.files import read_surface
 from surfacediffusion.files.export import export
 
@@ -71,7 +70,8 @@ def from_stl(corners):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "part.stl")
         export(file, corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
-        return welded(read_surface(file).solver)
+        given = read_surface(file)
+        return sd.weld((given.points, given.faces)).surface
 
 
 def edges_of(surface):

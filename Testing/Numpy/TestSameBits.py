@@ -46,6 +46,7 @@ WITHOUT_FILTER = {
                     "matrices of Core, in coordinates"),
     **dict.fromkeys(("geodesic_path", "path_through", "geodesic_disk"), "places and lines, which Core finds"),
     "resample": "weights of Core, between two surfaces",
+    **dict.fromkeys(("weld", "bodies"), "facets and solids of files, which Core finds"),
     **dict.fromkeys(("refine", "sphere", "on_faces", "on_points", "get_number_of_threads",
                      "set_number_of_threads"), "no computation on data"),
 }

@@ -124,6 +124,21 @@ class Texture(unittest.TestCase):
         edges = wavelength(surface, u1, away < 2.5)
         self.assertAlmostEqual(edges / faces, 1, delta=0.05)
 
+    def test_needles_do_not_change_the_wavelength_of_a_coarse_start(self):
+        angle = np.pi * np.arange(60) / 30
+        ring = 15 * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(60)])
+        i, k = np.arange(60), np.arange(1, 59)
+        j, first = (i + 1) % 60, np.zeros(58, dtype=int)
+        faces = np.vstack([np.stack([i, j, 60 + j], axis=1), np.stack([i, 60 + j, 60 + i], axis=1),
+                           np.stack([first, k + 1, k], axis=1), np.stack([first + 60, 60 + k, 61 + k], axis=1)])
+        rod = sd.refine((np.vstack([ring, ring + [0, 0, 20]]), faces), 0.6).surface
+        found = [wavelength(rod, sd.turing_texture(
+            rod, feature_size=4.0, diffusion_rate1=2.6 * 18, refine_to=0, coarse_start_size=size, stop_tolerance=0.02,
+            number_of_time_steps=600).values[:, 0], slice(None)) for size in (1, 0)]
+        for length in found:
+            self.assertAlmostEqual(4.0 / length, 1, delta=0.1)
+        self.assertAlmostEqual(found[0] / found[1], 1, delta=0.05)
+
     def test_fine_surfaces_and_0_keep_the_edges(self):
         ball = sd.sphere(3)
         for options in ({"feature_size": 2.0}, {"feature_size": 0.3, "refine_to": 0}, {}):

@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/Relief.h"
 
+#include "Core/Geometry/Bodies.h"
 #include "Core/Geometry/SelfIntersections.h"
-#include "Core/Geometry/SmallestWall.h"
-#include "Core/Geometry/TriangleOrientation.h"
 #include "Core/Geometry/TriangleTree.h"
+#include "Core/Geometry/Walls.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -55,48 +55,6 @@ Points UnitNormals(const Points& points, const Triangles& faces, const ParallelF
   return normals;
 }
 
-struct EdgeCounts
-{
-  Index Open = 0;
-  Index NonManifold = 0;
-  std::vector<char> IsRim; ///< per vertex
-};
-
-EdgeCounts CountEdges(const Triangles& faces, Index numberOfVertices)
-{
-  std::vector<std::pair<Index, Index>> sides;
-  sides.reserve(3 * static_cast<std::size_t>(faces.rows()));
-  for (Eigen::Index t = 0; t < faces.rows(); ++t)
-  {
-    if (IsCollapsed(faces, t))
-    {
-      continue;
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      sides.emplace_back(std::minmax({ faces(t, a), faces(t, (a + 1) % 3) }));
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  EdgeCounts counts;
-  counts.IsRim.assign(static_cast<std::size_t>(numberOfVertices), 0);
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end)
-  {
-    while (end < sides.size() && sides[end] == sides[begin])
-    {
-      ++end;
-    }
-    counts.Open += end - begin == 1;
-    counts.NonManifold += end - begin > 2;
-    if (end - begin != 2)
-    {
-      counts.IsRim[static_cast<std::size_t>(sides[begin].first)] = 1;
-      counts.IsRim[static_cast<std::size_t>(sides[begin].second)] = 1;
-    }
-  }
-  return counts;
-}
-
 double VolumeOf(const Points& points, const Triangles& faces)
 {
   const Eigen::RowVector3d center = points.colwise().mean();
@@ -107,41 +65,6 @@ double VolumeOf(const Points& points, const Triangles& faces)
       (PlaceOf(points, faces(t, 0)) - center.transpose()).dot(DoubledNormal(points, faces, t));
   }
   return volume / 6.0;
-}
-
-/// Per triangle, the first with the same corners.
-std::vector<Index> FindFirsts(const Triangles& faces)
-{
-  using Corners = std::array<Index, 3>;
-  std::vector<std::pair<Corners, Index>> sorted;
-  sorted.reserve(static_cast<std::size_t>(faces.rows()));
-  for (Index t = 0; t < static_cast<Index>(faces.rows()); ++t)
-  {
-    Corners corners{ faces(t, 0), faces(t, 1), faces(t, 2) };
-    std::sort(corners.begin(), corners.end());
-    sorted.emplace_back(corners, t);
-  }
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<Index> firsts(sorted.size());
-  for (std::size_t k = 0; k < sorted.size(); ++k)
-  {
-    const bool isFirst = k == 0 || sorted[k].first != sorted[k - 1].first;
-    firsts[static_cast<std::size_t>(sorted[k].second)] =
-      isFirst ? sorted[k].second : firsts[static_cast<std::size_t>(sorted[k - 1].second)];
-  }
-  return firsts;
-}
-
-/// Orient the triangles alike across edges of two, and outwards if they enclose a volume.
-EdgeCounts TurnOutwards(const Points& points, Triangles& faces)
-{
-  OrientTriangles(points, faces);
-  EdgeCounts edges = CountEdges(faces, static_cast<Index>(points.rows()));
-  if (edges.Open == 0 && VolumeOf(points, faces) < 0.0)
-  {
-    faces.col(1).swap(faces.col(2));
-  }
-  return edges;
 }
 
 double AngleAt(const Vector3& at, const Vector3& p, const Vector3& q)
@@ -330,9 +253,11 @@ Relief MakeRelief(const Points& points, const Triangles& triangles, const Vector
   faces.conservativeResize(distinct, 3);
   relief.RepeatedTriangles = static_cast<Index>(firsts.size()) - distinct;
   const auto count = static_cast<Index>(points.rows());
-  const EdgeCounts edges = TurnOutwards(points, faces);
-  relief.OpenEdges = edges.Open;
-  relief.NonManifoldEdges = edges.NonManifold;
+  TurnOutwards(points, faces);
+  const Bodies bodies = FindBodies(points, faces, parallel);
+  relief.OpenEdges = bodies.Edges.Open;
+  relief.NonManifoldEdges = bodies.Edges.NonManifold;
+  relief.OverlappingBodies = bodies.Overlaps;
   relief.Faces.resize(triangles.rows(), 3);
   for (std::size_t t = 0; t < firsts.size(); ++t)
   {
@@ -350,7 +275,8 @@ Relief MakeRelief(const Points& points, const Triangles& triangles, const Vector
       [&](Index i)
       {
         const Vector3 path = heights[i] * directions.row(i).transpose();
-        used[i] = edges.IsRim[static_cast<std::size_t>(i)]
+        used[i] = bodies.Edges.IsRim[static_cast<std::size_t>(i)] ||
+            bodies.IsInside[static_cast<std::size_t>(i)]
           ? 0.0
           : heights[i] * PartInBall(tree, points, faces, i, path);
       });
@@ -394,8 +320,10 @@ Relief MakeRelief(const Points& points, const Triangles& triangles, const Vector
     relief.LoweredVertices += used[i] != heights[i];
   }
   relief.VolumeChange = VolumeOf(relief.Places, faces) - VolumeOf(points, faces);
-  relief.SmallestWall =
-    FindSmallestWall(points, relief.Places, faces, normals, directions, parallel);
+  relief.Walls = FindWalls(points, relief.Places, faces, normals, directions, parallel);
+  relief.SmallestWall = relief.Walls.empty()
+    ? std::numeric_limits<double>::infinity()
+    : *std::min_element(relief.Walls.begin(), relief.Walls.end());
   progress.Report(1.0);
   return relief;
 }

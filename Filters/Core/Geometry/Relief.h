@@ -42,15 +42,16 @@ struct Relief
   Index LoweredVertices = 0; ///< whose height is less than the given one
   Index OpenEdges = 0; ///< of one triangle
   Index NonManifoldEdges = 0; ///< of three or more triangles
+  Index OverlappingBodies = 0; ///< pairs, see FindBodies()
   Index RepeatedTriangles = 0; ///< with the same corners as one before, which count once
   Index CrossingTrianglesBefore = 0; ///< see FindSelfIntersections()
   Index CrossingTriangles = 0; ///< after the relief
   double VolumeChange = 0.0; ///< the volume after the relief less that before, if it is closed
-  double SmallestWall =
-    0.0; ///< after the relief, see FindSmallestWall(); infinite if there is none
+  std::vector<double> Walls; ///< per vertex, after the relief, see FindWalls()
+  double SmallestWall = 0.0; ///< of these; infinite if there is none
 };
 
-/// Move the vertices of a surface by heights along their normals, outwards if it is closed.
+/// Move the vertices of a surface by heights along their normals, outwards of closed bodies.
 ///
 /// A vertex moves by h d, where d is the vector with d . n = 1 for the normals n of the triangles
 /// around it, in the sense of least squares weighted by angles. So flat faces at a sharp edge are
@@ -65,8 +66,9 @@ struct Relief
 /// still do, heights are halved, and at last 0.
 ///
 /// Vertices on edges of one triangle, and of three or more, stay, so that rims fit what they fitted
-/// before. Triangles are oriented first, see OrientTriangles(); those with the same corners count as
-/// one, and get one orientation. The result has the same triangles: it is closed where the input is.
+/// before, and so do those inside another body. Triangles are oriented first, outwards of the solid
+/// in cavities, too, see TurnOutwards(); those with the same corners count as one, and get one
+/// orientation. The result has the same triangles: it is closed where the input is.
 ///
 /// heights: per vertex, finite. Throws Aborted.
 Relief MakeRelief(const Points& points, const Triangles& triangles, const Vector& heights,

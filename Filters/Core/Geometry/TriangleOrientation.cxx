@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Geometry/TriangleOrientation.h"
 
+#include "Core/Geometry/TriangleSides.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,25 +16,6 @@ namespace SurfaceDiffusion
 
 namespace
 {
-
-/// An edge of a triangle, by its vertices.
-struct Side
-{
-  Index Low, High;
-  Index Triangle;
-  int Number; ///< of the side in the triangle
-  bool Rises; ///< whether the triangle passes it from Low to High
-
-  bool IsOfSameEdge(const Side& other) const
-  {
-    return this->Low == other.Low && this->High == other.High;
-  }
-  bool operator<(const Side& other) const
-  {
-    return std::tie(this->Low, this->High, this->Triangle) <
-      std::tie(other.Low, other.High, other.Triangle);
-  }
-};
 
 /// The other triangle of a side, if its edge has two.
 struct Neighbour
@@ -46,36 +28,18 @@ using Neighbours = std::vector<std::array<Neighbour, 3>>;
 
 Neighbours FindNeighbours(const Triangles& triangles)
 {
-  std::vector<Side> sides;
-  sides.reserve(3 * static_cast<std::size_t>(triangles.rows()));
-  for (Index t = 0; t < static_cast<Index>(triangles.rows()); ++t)
-  {
-    if (IsCollapsed(triangles, t))
-    {
-      continue;
-    }
-    for (int a = 0; a < 3; ++a)
-    {
-      const Index from = triangles(t, a);
-      const Index to = triangles(t, (a + 1) % 3);
-      sides.push_back({ std::min(from, to), std::max(from, to), t, a, from < to });
-    }
-  }
-  std::sort(sides.begin(), sides.end());
   Neighbours neighbours(static_cast<std::size_t>(triangles.rows()));
-  for (auto first = sides.begin(); first != sides.end();)
-  {
-    const auto last = std::find_if(
-      first, sides.end(), [&](const Side& side) { return !side.IsOfSameEdge(*first); });
-    if (last - first == 2)
+  ForEachEdge(SortSides(triangles),
+    [&](auto first, auto last)
     {
-      const Side& other = first[1];
-      const bool isOpposite = first->Rises == other.Rises;
-      neighbours[first->Triangle][first->Number] = { other.Triangle, isOpposite };
-      neighbours[other.Triangle][other.Number] = { first->Triangle, isOpposite };
-    }
-    first = last;
-  }
+      if (last - first == 2)
+      {
+        const TriangleSide& other = first[1];
+        const bool isOpposite = first->Rises == other.Rises;
+        neighbours[first->Triangle][first->Number] = { other.Triangle, isOpposite };
+        neighbours[other.Triangle][other.Number] = { first->Triangle, isOpposite };
+      }
+    });
   return neighbours;
 }
 
@@ -122,12 +86,6 @@ void Follow(const Neighbours& neighbours, const Takes& takes, std::vector<Turn>&
 }
 
 } // namespace
-
-bool IsCollapsed(const Triangles& triangles, Index t)
-{
-  return triangles(t, 0) == triangles(t, 1) || triangles(t, 1) == triangles(t, 2) ||
-    triangles(t, 2) == triangles(t, 0);
-}
 
 bool HasOrientation(const Points& points, const Triangles& triangles, Index t)
 {

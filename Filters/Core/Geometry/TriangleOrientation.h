@@ -23,9 +23,6 @@ namespace SurfaceDiffusion
 void OrientTriangles(
   const Points& points, Triangles& triangles, std::vector<char>* onOneSide = nullptr);
 
-/// Whether two corners of triangle t are one point, as merging leaves it: it has no edges.
-bool IsCollapsed(const Triangles& triangles, Index t);
-
 /// Whether the height of triangle t over its longest side is more than 1e-6 of that.
 bool HasOrientation(const Points& points, const Triangles& triangles, Index t);
 

@@ -9,9 +9,9 @@ from .._refinement import MAXIMUM_TRIANGLES
 from ..files import new_data, read_surface
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export, kind_of_export, places_in_file
-from . import common, inputs, values
+from . import common, flat, inputs, solids, values
 from .printing import MAXIMUM_TRIANGLES_OF_PARTS, PATTERNS, edge_of_triangles, in_coordinates
-from .printing import is_for_printing, print_texture, reaction_of_pattern
+from .printing import is_for_printing, print_texture, reaction_of_pattern, unit_of
 from .report import number
 from .stages import given, read_surface_for_output, require_array, write_array, write_new
 
@@ -25,8 +25,8 @@ Lengths may have a unit: 4mm, 0.2cm, 0.1in, 300um. Files of surfaces name no uni
 SURFACE.
 
 """ + common.paragraph(
-    "The name of OUTPUT gives its format. .stl and .3mf are parts for printing and need --relief; .obj, "
-    ".off and .ply have the pattern as grey values, too. For these, vertices at the same place become one, "
+    "The name of OUTPUT gives its format. .stl is a part for printing and needs --relief; .obj, .off, .ply and, "
+    "without relief, .3mf have the pattern as grey values, too. For these, vertices at the same place become one, "
     "and edges are bisected to 8 per FEATURE_SIZE, so that CAD files with few triangles do. "
     f"{common.NEW_FORMATS}, are the pattern at the vertices of SURFACE as they are.", 103)
 
@@ -68,12 +68,16 @@ def refine(arguments, report):
     report.facts.update(longest_edge=number(fine.longest_edge), vertices=fine.surface.n_points,
                         triangles=fine.surface.n_faces)
     colors, lost = surface.beside()
-    if colors is not None and kind_of_export(arguments.output) not in ("obj", "off", "ply"):
+    kind = kind_of_export(arguments.output)
+    if colors is not None and kind == "stl":
         colors, lost = None, ["colours", *lost]
+    if kind == surface.kind == "3mf":
+        lost = []
     with report.timed("write"):
         points = places_in_file(arguments.output, fine.surface.points, report.warn)
+        objects = solids.with_faces(surface.image, fine.faces) if surface.kind == "3mf" else None
         export(arguments.output, points, fine.surface.triangles,
-               None if colors is None else fine.at_points(colors))
+               None if colors is None else fine.at_points(colors), objects=objects)
         if lost:
             report.warn(f"{arguments.output} has none of the {', '.join(lost)} of {surface.path}; --data takes "
                         "data at the vertices along")
@@ -105,12 +109,28 @@ def add_texture(commands):
     parser.add_argument("--overhang", metavar="DEGREES",
                         type=values.numbers("degrees from 0 to 90", lambda value: 0 <= value <= 90),
                         help="no relief on faces that face down, against z, more steeply than this")
-    parser.add_argument("--unit", choices=tuple(UNITS), default="mm",
-                        help="the unit of the coordinates of SURFACE (default mm)")
+    parser.add_argument("--keep-flat", metavar="REGION", action="append", type=flat.region,
+                        help="no relief in a region, and all of it beyond its --border: " + flat.ALLOWED
+                             + "; may be repeated")
+    parser.add_argument("--border", metavar="WIDTH", type=values.length_or_zero,
+                        help="the width in which relief grows beside --keep-flat (default 0)")
+    parser.add_argument("--min-wall", metavar="WIDTH", type=values.positive_length,
+                        help="warn where the part with relief is thinner")
+    parser.add_argument("--two-colour", action="store_true",
+                        help="the raised pattern is a solid of its own, of another material (.3mf)")
+    parser.add_argument("--weld", metavar="LENGTH", type=values.length_or_zero,
+                        help="join corners of facets that are no more apart, at open edges, and edges with a vertex "
+                             "on them; 0: only corners at one place (default: 1e-5 of the size of the part, and at "
+                             "most 1 %% of its open edges)")
+    parser.add_argument("--printer", metavar="NOZZLE", type=values.positive_length,
+                        help="edges of at most this length, as wide as the printer draws; the number of triangles and "
+                             "the size of the file are said before")
+    parser.add_argument("--unit", choices=tuple(UNITS),
+                        help="the unit of the coordinates of SURFACE (default mm, and that of the file for .3mf)")
     parser.add_argument("--maximum-triangles", metavar="N", type=values.count,
                         help="the largest number of triangles of a part, of which a million take about a "
-                             f"minute (default {MAXIMUM_TRIANGLES_OF_PARTS}); a FEATURE_SIZE that needs more is "
-                             "refused")
+                             f"minute (default {MAXIMUM_TRIANGLES_OF_PARTS}, with --printer "
+                             f"{MAXIMUM_TRIANGLES}); what needs more is refused")
     kind = parser.add_mutually_exclusive_group()
     kind.add_argument("--pattern", choices=tuple(PATTERNS),
                       help="the pattern (default for .stl, .3mf, .obj, .off and with --relief: labyrinth)")
@@ -123,15 +143,18 @@ def add_texture(commands):
 
 
 def texture(arguments, report):
-    surface = read_surface_for_output(arguments, report)
+    surface = read_surface_for_output(arguments, report, weld=False)
+    arguments.unit = unit_of(arguments, surface)
     if arguments.relief is None:
-        inputs.refuse(arguments, ["--base", "--flank", "--overhang"], "without --relief", "both")
+        inputs.refuse(arguments, ["--base", "--flank", "--overhang", "--keep-flat", "--border", "--min-wall",
+                                  "--two-colour"], "without --relief", "both")
     if is_for_printing(arguments, surface):
         inputs.refuse(arguments, ["--merge", "--merge-tolerance"],
                       "for parts, whose vertices at the same place are one", "for values at the vertices")
         print_texture(arguments, surface, report)
         return
-    inputs.refuse(arguments, ["--maximum-triangles"], "for values at the vertices", "for parts")
+    inputs.refuse(arguments, ["--maximum-triangles", "--weld", "--printer"], "for values at the vertices",
+                  "for parts")
     target = new_data(surface, arguments.output, ["Texture"])
     size = in_coordinates(arguments.size, arguments.unit)
     options = given(kinetics=arguments.kinetics, number_of_time_steps=arguments.steps, **common.merging(arguments))

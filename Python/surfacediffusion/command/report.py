@@ -117,6 +117,11 @@ class Report:
     def say(self, line):
         self.lines.append(line)
 
+    def announce(self, line):
+        """A line before a long step."""
+        if not self.arguments.quiet and not self.arguments.json:
+            print(line, flush=True)
+
     def say_written(self, path, what):
         """The line about an output, with the time until now."""
         seconds = sum(entry["wall"] for entry in self.seconds.values())

@@ -147,11 +147,11 @@ def _integrals(areas, values):
 
 # ---- results of one surface ----------------------------------------------------------------------
 
-def read_surface_for_output(arguments, report, lengths=False):
-    """lengths: whether the result is in millimetres."""
+def read_surface_for_output(arguments, report, lengths=False, weld=True):
+    """lengths: whether the result is in millimetres. weld: see read_surface()."""
     check_output_folder(arguments.output)
     with report.timed("read"):
-        surface = read_surface(arguments.surface)
+        surface = read_surface(arguments.surface, weld)
         if lengths:
             inputs.lengths_of(surface)
     report.facts.update(surface=arguments.surface, output=arguments.output)

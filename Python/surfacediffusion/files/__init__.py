@@ -7,7 +7,7 @@
     data.save("smooth.shape.gii", [values])             # the same format and metadata
 
 The kind of a file is read from its content, not from its name; gzip is undone, and a file is opened
-once, so that it may be a pipe. Surfaces: GIFTI, FreeSurfer, OFF, OBJ, PLY, STL, VTK polydata and grids of
+once, so that it may be a pipe. Surfaces: GIFTI, FreeSurfer, OFF, OBJ, PLY, STL, 3MF, VTK polydata and grids of
 polygons (legacy and XML). Data: GIFTI, CIFTI (dscalar, dtseries), FreeSurfer (curv, mgh, mgz, NIfTI with
 one voxel per vertex, label, annot), NumPy (npy), text with one number per line and comments after #, and the
 vertex data of PLY and VTK. nibabel reads the formats of neuroimaging (`pip install surfacediffusion[io]`), and the

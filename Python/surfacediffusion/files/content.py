@@ -23,13 +23,13 @@ NAMES = {
     "gifti": "GIFTI", "cifti": "CIFTI", "nifti": "NIfTI", "mgh": "FreeSurfer mgh",
     "freesurfer": "FreeSurfer surface", "asc": "FreeSurfer asc", "curv": "FreeSurfer curv",
     "label": "FreeSurfer label", "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY",
-    "stl": "STL", "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid", "npy": "NumPy npy", "text": "text",
+    "stl": "STL", "3mf": "3MF", "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid", "npy": "NumPy npy", "text": "text",
 }
 
 # The ends of names by which an output that is named like another format, or like none, is noticed.
 EXTENSIONS = {
     ".gii": "gifti", ".mgh": "mgh", ".mgz": "mgh", ".label": "label", ".asc": "asc", ".off": "off", ".obj": "obj",
-    ".ply": "ply", ".stl": "stl", ".vtk": "vtk", ".vtp": "vtp", ".vtu": "vtu", ".npy": "npy", ".nii": "nifti",
+    ".ply": "ply", ".stl": "stl", ".3mf": "3mf", ".vtk": "vtk", ".vtp": "vtp", ".vtu": "vtu", ".npy": "npy", ".nii": "nifti",
     ".annot": "annot", ".txt": "text",
 }
 
@@ -90,8 +90,7 @@ def read_content(path) -> Content:
 def _unknown(path, data):
     """What a file is that has none of the kinds."""
     if data.startswith(b"PK\3\4"):
-        return "a 3MF file, or another archive of files" if path.lower().endswith(
-            ".3mf") else "an archive of files (zip), as 3MF"
+        return "an archive of files (zip) without the model of a 3MF file"
     if _plain_name(path).endswith((".img", ".hdr")):
         return "half of a pair of files .hdr and .img"
     return f"a file of unknown kind that starts with {data[:12]!r}"
@@ -168,6 +167,8 @@ def _is_cifti(data):
 
 
 def _find_binary_kind(data):
+    if data.startswith(b"PK\3\4") and b".model" in data:  # the names of files are not packed
+        return "3mf"
     if _is_nifti2(data, "<") or _is_nifti2(data, ">"):
         return "cifti" if _is_cifti(data) else "nifti"
     if len(data) >= 348 and data[344:347] == b"n+1":

@@ -4,17 +4,16 @@
 same bytes."""
 from __future__ import annotations
 
-import io
+import dataclasses
 import os
-import zipfile
 
 import numpy as np
 
+from . import threemf
 from .content import FileError, check_range, write_atomically
+from .threemf import UNITS, Objects
 
-#: The units of coordinates, in millimetres, and their names in 3MF.
-UNITS = {"um": (0.001, "micron"), "mm": (1.0, "millimeter"), "cm": (10.0, "centimeter"),
-         "m": (1000.0, "meter"), "in": (25.4, "inch")}
+__all__ = ["UNITS", "export", "kind_of_export", "places_in_file"]
 
 #: Of STL's coordinates, over the size of the part, from corner to corner; at the origin it is below 1e-7.
 LARGEST_STEP = 1e-5
@@ -28,16 +27,16 @@ def kind_of_export(path):
     return kind if kind in _WRITERS else None
 
 
-def export(path, points, triangles, colors=None, unit="mm"):
+def export(path, points, triangles, colors=None, unit="mm", objects=None, materials=()):
     """Write a surface in the format that the name says. colors: (n, 3) of uint8, which STL has not.
-    unit: of the coordinates, for 3MF; the other formats have none."""
+    Of 3MF, unit: of the coordinates; objects: Objects in place of one; materials: see threemf.write()."""
     kind = kind_of_export(path)
     if kind is None:
         raise FileError(f"{path}: the name announces no format of surfaces; allowed: "
                         + ", ".join("." + known for known in _WRITERS))
     check_range(path, kind, [points], "coordinate")
-    write_atomically(path, _WRITERS[kind](np.asarray(points, dtype=float),
-                                          np.asarray(triangles), colors, unit))
+    more = (unit, objects, materials) if kind == "3mf" else ()
+    write_atomically(path, _WRITERS[kind](np.asarray(points, dtype=float), np.asarray(triangles), colors, *more))
 
 
 def places_in_file(path, points, say):
@@ -58,7 +57,7 @@ def places_in_file(path, points, say):
     return points - shift
 
 
-def _stl(points, triangles, colors, unit):
+def _stl(points, triangles, colors):
     corners = points[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
@@ -68,23 +67,23 @@ def _stl(points, triangles, colors, unit):
     return b"surfacediffusion".ljust(80) + np.uint32(len(rows)).tobytes() + rows.tobytes()
 
 
-def _obj(points, triangles, colors, unit):
+def _obj(points, triangles, colors):
     if colors is None:
-        vertices = _lines("v %.9g %.9g %.9g", points)
+        vertices = _lines("v %g %g %g", points)
     else:
-        vertices = _lines("v %.9g %.9g %.9g %.4g %.4g %.4g", np.hstack([points, colors / 255]))
+        vertices = _lines("v %g %g %g %.4g %.4g %.4g", np.hstack([points, colors / 255]))
     return (vertices + _lines("f %d %d %d", triangles + 1)).encode()
 
 
-def _off(points, triangles, colors, unit):
+def _off(points, triangles, colors):
     if colors is None:
-        head, vertices = "OFF", _lines("%.9g %.9g %.9g", points)
+        head, vertices = "OFF", _lines("%g %g %g", points)
     else:
-        head, vertices = "COFF", _lines("%.9g %.9g %.9g %d %d %d 255", np.hstack([points, colors]))
+        head, vertices = "COFF", _lines("%g %g %g %d %d %d 255", np.hstack([points, colors]))
     return (f"{head}\n{len(points)} {len(triangles)} 0\n" + vertices + _lines("3 %d %d %d", triangles)).encode()
 
 
-def _ply(points, triangles, colors, unit):
+def _ply(points, triangles, colors):
     properties = [(name, "<f8", "double") for name in "xyz"]
     if colors is not None:
         properties += [(name, "u1", "uchar") for name in ("red", "green", "blue")]
@@ -102,49 +101,20 @@ def _ply(points, triangles, colors, unit):
     return "\n".join(header).encode() + vertices.tobytes() + faces.tobytes()
 
 
-_CONTENT_TYPES = """<?xml version="1.0" encoding="UTF-8"?>
-<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">\
-<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>\
-<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>\
-</Types>
-"""
-_RELATIONSHIPS = """<?xml version="1.0" encoding="UTF-8"?>
-<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">\
-<Relationship Id="rel0" Target="/3D/3dmodel.model" \
-Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
-"""
-_MODEL = """<?xml version="1.0" encoding="UTF-8"?>
-<model unit="{unit}" xml:lang="en-US" \
-xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
-<resources><object id="1" type="model"><mesh>
-<vertices>
-{vertices}</vertices>
-<triangles>
-{triangles}</triangles>
-</mesh></object></resources>
-<build><item objectid="1"/></build>
-</model>
-"""
-
-
-def _3mf(points, triangles, colors, unit):
-    distinct = ((triangles[:, 0] != triangles[:, 1]) & (triangles[:, 1] != triangles[:, 2])
-                & (triangles[:, 2] != triangles[:, 0]))  # the format allows no others
-    model = _MODEL.format(
-        unit=UNITS[unit][1], vertices=_lines('<vertex x="%.9g" y="%.9g" z="%.9g"/>', points),
-        triangles=_lines('<triangle v1="%d" v2="%d" v3="%d"/>', triangles[distinct]))
-    file = io.BytesIO()
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=4) as archive:
-        for name, text in (("[Content_Types].xml", _CONTENT_TYPES), ("_rels/.rels", _RELATIONSHIPS),
-                           ("3D/3dmodel.model", model)):
-            entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))  # not the time of writing
-            entry.compress_type, entry.create_system = zipfile.ZIP_DEFLATED, 3
-            entry.external_attr = 0o644 << 16
-            archive.writestr(entry, text)
-    return file.getvalue()
+def _3mf(points, triangles, colors, unit, objects, materials):
+    objects = objects or Objects(unit, [""], np.zeros(len(triangles), dtype=int))
+    if colors is not None:
+        objects = dataclasses.replace(objects, colors=np.asarray(colors)[triangles])
+    return threemf.write(points, triangles, objects, _lines, materials)
 
 
 def _lines(template, rows):
+    """Lines of numbers. %g are coordinates, with 9 digits of the size of the surface, wherever it is."""
+    if rows.dtype.kind == "f":
+        places = rows[:, :3]
+        size, most = np.ptp(places, axis=0).max(initial=0), np.abs(places).max(initial=0)
+        digits = 9 + (int(np.ceil(np.log10(most / size))) if 0 < size < most else 0)
+        template = template.replace("%g", f"%.{min(digits, 17)}g")
     return "".join(map((template + "\n").__mod__, map(tuple, rows.tolist())))
 
 

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from . import gifti_data, mesh_text, ply, stl, vtk_files
+from . import export, gifti_data, mesh_text, ply, stl, threemf, vtk_files
 from .content import Content, check_output_name, check_range, import_reader, on_disk, read_content, reading
 from .content import write_atomically
 
-ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, VTK"
+ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, 3MF, VTK"
 
 #: What the names of FreeSurfer's files say
 _SHAPES = {"inflated": "inflated", "sphere": "spherical", "flat": "flat"}
@@ -97,14 +97,15 @@ class SurfaceFile:
         return normals
 
 
-def read_surface(path) -> SurfaceFile:
-    """Read a surface from a file of one of the formats in ALLOWED, or from its Content."""
+def read_surface(path, weld=True) -> SurfaceFile:
+    """Read a surface from a file of one of the formats in ALLOWED, or from its Content. weld: whether corners of STL
+    that are rounded apart become one."""
     content = path if isinstance(path, Content) else read_content(path)
     if content.kind not in _FORMATS:
         raise content.error(f"a {content.name} file, which has no surface; allowed: {ALLOWED}")
     with reading(content):
         read, _ = _FORMATS[content.kind]
-        surface = read(content)
+        surface = _read_stl(content, weld) if content.kind == "stl" else read(content)
         surface.faces = _faces(surface.faces)
         _check(content, surface)
     return surface
@@ -244,17 +245,38 @@ def _write_ply(surface, points):
     return surface.image.write(columns), "computed again" if has_normals else ""
 
 
-def _read_stl(content):
-    points, faces, apart = stl.read(content.bytes)
-    if apart:
-        warnings.warn(f"{content.path}: corners of facets up to {apart:.2g} apart, at open edges, are joined, "
-                      "since STL files are rounded", stacklevel=4)
+def _read_stl(content, weld=True):
+    points, faces = stl.read(content.bytes)
+    if weld and np.isfinite(points).all():
+        points, faces, apart = _join(points, faces)
+        if apart:
+            warnings.warn(f"{content.path}: corners of facets up to {apart:.2g} apart, at open edges, are joined, "
+                          "since STL files are rounded", stacklevel=4)
     return SurfaceFile(content.path, content.kind, points, faces, image=content.bytes)
+
+
+def _join(points, faces):
+    """The same surface without the gaps of rounding between ends of open edges, and the largest."""
+    from .. import _core
+    from .._surface import Surface
+
+    point_of, apart = _core.join_open_edges(Surface(points, faces)._core, None)
+    kept, numbers = np.unique(point_of[faces], return_inverse=True)
+    return (points[kept], numbers.reshape(-1, 3), apart) if apart else (points, faces, 0.0)
 
 
 def _write_stl(surface, points):
     _, normals = _normals(points, surface.faces)
     return stl.write(surface.image, points, surface.faces, normals), "computed again"
+
+
+def _read_3mf(content):
+    points, faces, objects = threemf.read(content.bytes)
+    return SurfaceFile(content.path, content.kind, points, faces, image=objects)
+
+
+def _write_3mf(surface, points):
+    return threemf.write(np.asarray(points, dtype=float), surface.faces, surface.image, export._lines), ""
 
 
 def _read_vtk(content):
@@ -296,7 +318,12 @@ def _beside_vtk(mesh):
                   for i in range(data.GetNumberOfArrays()) if data.GetArray(i) != data.GetNormals()]
 
 
+def _beside_3mf(objects):
+    return None, ["colours of faces"] * (objects.colors is not None)
+
+
 _BESIDE = {
+    "3mf": _beside_3mf,
     "gifti": _beside_gifti, "ply": _beside_ply, "vtk": _beside_vtk, "vtp": _beside_vtk,
     "off": lambda data: (None, mesh_text.beside_off(data)),
     "obj": lambda data: (None, mesh_text.beside_obj(data)),
@@ -311,6 +338,7 @@ _FORMATS = {
     "obj": (_read_text, _write_text),
     "ply": (_read_ply, _write_ply),
     "stl": (_read_stl, _write_stl),
+    "3mf": (_read_3mf, _write_3mf),
     "vtk": (_read_vtk, _write_vtk),
     "vtp": (_read_vtk, _write_vtk),
     "vtu": (_read_vtk, _write_vtk),

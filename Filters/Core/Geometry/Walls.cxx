@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Core/Geometry/SmallestWall.h"
+#include "Core/Geometry/Walls.h"
 
+#include "Core/Geometry/Ray.h"
 #include "Core/Geometry/TriangleTree.h"
 
 #include <Eigen/Geometry>
@@ -30,7 +31,7 @@ Vector3 PositionOf(const Points& points, Index vertex)
 
 } // namespace
 
-double FindSmallestWall(const Points& before, const Points& after, const Triangles& faces,
+std::vector<double> FindWalls(const Points& before, const Points& after, const Triangles& faces,
   const Points& normals, const Points& directions, const ParallelFor& parallel)
 {
   const TriangleTree tree(after, faces);
@@ -46,35 +47,12 @@ double FindSmallestWall(const Points& before, const Points& after, const Triangl
       {
         return;
       }
-      const Vector3 from = PositionOf(after, i);
-      const Vector3 ray = -directions.row(i).transpose() / length;
-      const Vector3 inverse = ray.cwiseInverse();
+      const Ray ray(PositionOf(after, i), -directions.row(i).transpose() / length);
       double& wall = walls[static_cast<std::size_t>(i)];
-      const auto enters = [&](const TriangleTree::Box& box)
-      {
-        const Vector3 low = (box.min() - from).cwiseProduct(inverse);
-        const Vector3 high = (box.max() - from).cwiseProduct(inverse);
-        double first = 0.0;
-        double last = wall;
-        for (int k = 0; k < 3; ++k)
-        {
-          if (ray[k] == 0.0)
-          {
-            if (from[k] < box.min()[k] || from[k] > box.max()[k])
-            {
-              return false;
-            }
-            continue;
-          }
-          first = std::max(first, std::min(low[k], high[k]));
-          last = std::min(last, std::max(low[k], high[k]));
-        }
-        return first <= last;
-      };
-      tree.Visit(enters,
+      tree.Visit([&](const TriangleTree::Box& box) { return ray.Meets(box, 0.0, wall); },
         [&](Index t)
         {
-          if (normals.row(t).dot(ray) < WallCosine || faces(t, 0) == i || faces(t, 1) == i ||
+          if (normals.row(t).dot(ray.Way) < WallCosine || faces(t, 0) == i || faces(t, 1) == i ||
             faces(t, 2) == i)
           {
             return;
@@ -83,22 +61,14 @@ double FindSmallestWall(const Points& before, const Points& after, const Triangl
           const Vector3 b = PositionOf(after, faces(t, 1));
           const Vector3 c = PositionOf(after, faces(t, 2));
           const Vector3 normal = (b - a).cross(c - a);
-          const double along = normal.dot(ray);
-          if (!(along > 0.0))
-          {
-            return;
-          }
-          const double distance = normal.dot(a - from) / along;
-          const Vector3 hit = from + distance * ray;
-          if (distance > least && distance < wall && (b - a).cross(hit - a).dot(normal) >= 0.0 &&
-            (c - b).cross(hit - b).dot(normal) >= 0.0 && (a - c).cross(hit - c).dot(normal) >= 0.0)
+          const double distance = normal.dot(ray.Way) > 0.0 ? ray.DistanceTo(a, b, c, normal) : 0.0;
+          if (distance > least && distance < wall)
           {
             wall = distance;
           }
         });
     });
-  return walls.empty() ? std::numeric_limits<double>::infinity()
-                       : *std::min_element(walls.begin(), walls.end());
+  return walls;
 }
 
 } // namespace SurfaceDiffusion

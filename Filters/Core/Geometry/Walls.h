@@ -5,15 +5,17 @@
 #include "Core/Foundation/Parallel.h"
 #include "Core/Foundation/Types.h"
 
+#include <vector>
+
 namespace SurfaceDiffusion
 {
 
-/// The smallest distance from a vertex of a moved surface, against its direction, to a triangle that
-/// faced away, within 30 degrees, before the move; infinite if there is none.
+/// The distance from each vertex of a moved surface, against its direction, to a triangle that faced
+/// away, within 30 degrees, before the move; infinite if there is none.
 ///
 /// before, after: the vertices; normals: of the triangles before, of length 1 or 0; directions:
 /// those in which the vertices moved, of length 1 except at edges, which have no wall opposite.
-double FindSmallestWall(const Points& before, const Points& after, const Triangles& faces,
+std::vector<double> FindWalls(const Points& before, const Points& after, const Triangles& faces,
   const Points& normals, const Points& directions, const ParallelFor& parallel);
 
 } // namespace SurfaceDiffusion
