@@ -250,13 +250,20 @@ std::unique_ptr<Model> HeatSettings::MakeDeblurring(ModelInputs& inputs, RunResu
   task.NumberOfColumns = static_cast<int>(inputs.Columns);
   task.Anisotropy = this->Anisotropy();
   task.IsPreconditioner = true;
+  std::shared_ptr<DeblurringSpace> space; // all weights find the data's minimiser in it
+  if (!this->IsDirected())
+  {
+    space = std::make_shared<DeblurringSpace>();
+    space->Diffusivity = this->AlongDiffusivity;
+  }
   const auto make = [&](PointData data, double fidelity) -> std::unique_ptr<Model>
   {
     task.DiffusionNumber = this->LargestDiffusivity() / (fidelity * h * h);
     const auto solver = inputs.Solvers.Find(SolverPurpose::Step, task);
     const IterationLimits limits = solver->GetLimits();
     return std::make_unique<TikhonovDeblurring>(inputs.Surface.SharedAssembler(), weights,
-      std::move(data), fidelity, this->Blur.Make(inputs, limits), solver, limits, inputs.Parallel);
+      std::move(data), fidelity, this->Blur.Make(inputs, limits), solver, limits, inputs.Parallel,
+      space);
   };
   this->Blur.Warn(inputs, result);
   FidelityWeights found{ { this->FidelityWeight * unit } };

@@ -176,8 +176,9 @@ NB_MODULE(_core, m)
            double, const nb::object&>(),
       "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "merges"_a, "tolerance"_a,
       "progress"_a.none())
-    .def(
-      "prepare", &SurfaceFields::Prepare, "width"_a, "nu"_a, "unit_variance"_a, "progress"_a.none())
+    .def("prepare", &SurfaceFields::Prepare, "width"_a, "nu"_a, "unit_variance"_a,
+      "progress"_a.none(), "shares"_a = false)
+    .def("end_sharing", &SurfaceFields::EndSharing)
     .def("draw", &SurfaceFields::Draw, "seed"_a, "first"_a, "fields"_a, "progress"_a.none())
     .def("filter_scales", &SurfaceFields::FilterScales, "values"_a, "wavelengths"_a, "order"_a,
       "progress"_a.none())

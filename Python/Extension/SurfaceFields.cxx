@@ -38,10 +38,11 @@ SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
     });
 }
 
-void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::object& progress)
+void SurfaceFields::Prepare(
+  double width, int nu, bool unitVariance, const nb::object& progress, bool shares)
 {
   const UseGuard guard(this->InUse);
-  const std::tuple<double, int, bool> wanted{ width, nu, unitVariance };
+  const std::tuple<double, int, bool, bool> wanted{ width, nu, unitVariance, shares };
   if (this->Field && this->Prepared == wanted)
   {
     return;
@@ -54,7 +55,7 @@ void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::o
   settings.Nu = nu;
   settings.HasUnitVariance = unitVariance;
   this->Field.reset();
-  const std::pair<double, int> covariance{ width, nu };
+  const std::tuple<double, int, bool> covariance{ width, nu, shares };
   const auto known = this->Deviations.find(covariance);
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
@@ -63,7 +64,7 @@ void SurfaceFields::Prepare(double width, int nu, bool unitVariance, const nb::o
         CotanWeights(mesh, PythonThreads::Instance()), settings,
         MakeVertexIds(*this->Built, Fields()),
         unitVariance && known != this->Deviations.end() ? known->second : Vector(),
-        PythonThreads::Instance(), monitor);
+        PythonThreads::Instance(), monitor, shares ? &this->Poles : nullptr);
     });
   this->Prepared = wanted;
   constexpr std::size_t most = 16; // covariances, with a number per point each

@@ -28,8 +28,13 @@ public:
     bool maskOnFaces, bool merges, double tolerance, const nanobind::object& progress);
 
   /// Take the covariance: Gaussian of the full width at half maximum `width` if nu is 0, and
-  /// otherwise Matern's with nu and the range `width`. The last one is kept.
-  void Prepare(double width, int nu, bool unitVariance, const nanobind::object& progress);
+  /// otherwise Matern's with nu and the range `width`; white noise of variance 1 at each point if both are
+  /// 0. The last one is kept. shares: whether the variances are found with those of narrower Gaussian
+  /// fields before.
+  void Prepare(
+    double width, int nu, bool unitVariance, const nanobind::object& progress, bool shares);
+  /// Forget what the variances of wider fields would need.
+  void EndSharing() { this->Poles = SharedPoles(); }
   /// Write fields first, first + 1, ... to the columns; NaN at points that take no part. Returns the
   /// largest relative residual of solves above their tolerance.
   double Draw(std::int64_t seed, std::int64_t first, const ColumnArray& fields,
@@ -69,9 +74,10 @@ private:
   std::unique_ptr<const Surface> Built;
   std::unique_ptr<RandomField> Field;
   bool InUse = false;
-  std::map<std::pair<double, int>, Vector>
-    Deviations; ///< of fields with variance 1, by width and nu
-  std::tuple<double, int, bool> Prepared; ///< of Field
+  std::map<std::tuple<double, int, bool>, Vector>
+    Deviations; ///< of fields with variance 1, by width, nu, and whether they were shared
+  std::tuple<double, int, bool, bool> Prepared; ///< of Field
+  SharedPoles Poles;
 };
 
 } // namespace SurfaceDiffusion

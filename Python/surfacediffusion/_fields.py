@@ -22,8 +22,11 @@ from ._surface import (
 
 __all__ = ["Surrogates", "random_field", "surrogates"]
 
-#: Fields with which the variances of scales are measured.
-_SAMPLE = 64
+#: Fields with which the variances of scales are measured: the most, drawn at once, and the least.
+_SAMPLE, _FEWEST = 64, 8
+
+#: Independent parts in all fields of a width, from which on fewer fields will do: variances within 5 %.
+_PARTS = 1024
 
 #: Numbers in maps that are filtered together: 64 MB.
 _LARGEST = 1 << 23
@@ -250,12 +253,12 @@ def surrogates(
         variances = model.fit(_normal_scores(given, known), reporter)
         result = model.draw(variances, n, reporter)
     ordered = np.sort(given[known])
+    rows = np.flatnonzero(known)
     for k in np.arange(n):
-        ranks = np.argsort(np.argsort(result[known, k], kind="stable"), kind="stable")
-        result[known, k] = ordered[ranks]
+        result[rows[np.argsort(result[rows, k], kind="stable")], k] = ordered
     result[~known] = np.nan
     shares = variances * model.totals
-    return Surrogates(result, np.array([*model.widths[:-1], 0.0]), shares / shares.sum())
+    return Surrogates(result, np.array(model.widths), shares / shares.sum())
 
 
 class _Model:
@@ -271,25 +274,29 @@ class _Model:
         self._wavelengths = [3.0 * h]
         while self._wavelengths[-1] < size:
             self._wavelengths.append(2.0 * self._wavelengths[-1])
-        self.widths.append(1e-2 * h)
+        parts = [(size / width) ** 2 for width in self.widths]
+        self._samples = [int(min(_SAMPLE, max(_FEWEST, _PARTS / count))) for count in parts] + [_FEWEST]
+        self.widths.append(0.0)
         self.totals = np.ones(len(self.widths))
 
     def fit(self, scores: NDArray[np.float64], reporter: ProgressReporter) -> NDArray[np.float64]:
         """The variances of the fields."""
         found, maps = [], [scores[:, None]]
         for k in np.arange(len(self.widths)):
-            maps.append(self._draw(k, _STREAM // 2, np.empty((len(self._areas), _SAMPLE)),
+            maps.append(self._draw(k, _STREAM // 2, np.empty((len(self._areas), self._samples[k])),
                                    reporter.callable))
             # Maps of several widths share the factors of the filters, as memory allows.
-            if k + 1 == len(self.widths) or len(maps) * maps[-1].size > _LARGEST:
+            if k + 1 == len(self.widths) or sum(m.size for m in maps) > _LARGEST:
                 found.append(self._bands(np.hstack(maps)))
                 maps = []
             reporter.finish_part()
+        self._fields.end_sharing()
         variances = np.hstack(found)
         wanted = variances[:, 0]
         # Errors count relative to the root of the variance of their band.
         weights = 1.0 / np.sqrt(np.maximum(wanted, 1e-6 * wanted.sum()))
-        bands = variances[:, 1:].reshape(len(wanted), -1, _SAMPLE).mean(axis=2)
+        parts = np.split(variances[:, 1:], np.cumsum(self._samples)[:-1], axis=1)
+        bands = np.column_stack([part.mean(axis=1) for part in parts])
         self.totals = bands.sum(axis=0)  # of fields of variance 1, without their mean
         return solve_nonnegative(bands * weights[:, None], wanted * weights)
 
@@ -310,7 +317,8 @@ class _Model:
     def _draw(
         self, k: int, first: int, result: NDArray[np.float64], progress: Callable[[float], Any] | None
     ) -> NDArray[np.float64]:
-        _draw(self._fields, self.widths[k], 0, self._seed, (int(k) + 1) * _STREAM + first, True, result, progress)
+        _draw(self._fields, self.widths[k], 0, self._seed, (int(k) + 1) * _STREAM + first, True, result, progress,
+              shares=True)
         return result
 
     def _bands(self, maps: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -319,10 +327,10 @@ class _Model:
 
 
 def _draw(fields: Any, width: float, nu: int, seed: int, first: int, normalize: bool,
-          result: NDArray[np.float64], progress: Callable[[float], Any] | None) -> None:
+          result: NDArray[np.float64], progress: Callable[[float], Any] | None, shares: bool = False) -> None:
     """Write fields to the columns of `result`."""
     half = [part_of(progress, done, 0.5) for done in (0.0, 0.5)]
-    fields.prepare(width, nu, normalize, half[0])
+    fields.prepare(width, nu, normalize, half[0], shares)
     warn_of_solves(fields.draw(seed, first, result, half[1]))
 
 

@@ -55,12 +55,13 @@ struct BlurredSphere
     return u;
   }
   /// lambda in coordinate units.
-  std::unique_ptr<TikhonovDeblurring> MakeTikhonov(PointData data, double lambda) const
+  std::unique_ptr<TikhonovDeblurring> MakeTikhonov(
+    PointData data, double lambda, std::shared_ptr<DeblurringSpace> space = nullptr) const
   {
     const double unit = this->Mesh.LengthUnit();
     return std::make_unique<TikhonovDeblurring>(this->Operators,
       CotanWeights(this->Mesh, SerialFor()), std::move(data), lambda * unit * unit,
-      this->MakeBlur(), MakeCholeskySolver(), IterationLimits());
+      this->MakeBlur(), MakeCholeskySolver(), IterationLimits(), SerialFor(), std::move(space));
   }
   /// lambda in 1/(h R).
   std::unique_ptr<TotalVariationDeblurring> MakeTotalVariation(
@@ -267,6 +268,44 @@ TEST(TikhonovDeblurring, ColumnsAreAsIfAloneAndMissingValuesAreNotRead)
     Advance(*model, 1);
     EXPECT_LT((model->State() - all->State().col(k)).cwiseAbs().maxCoeff(), 1e-8);
   }
+}
+
+/// The space of the data serves all weights, and is made anew for other data.
+TEST(TikhonovDeblurring, AFunctionOfTheOperatorIsWhatConjugateGradientsFindInFewSolves)
+{
+  const BlurredSphere s(4);
+  const double h = MeanEdge(s.Mesh) * s.Mesh.LengthUnit();
+  const auto space = std::make_shared<DeblurringSpace>();
+  for (const int seed : { 1, 2 })
+  {
+    const PointData data = PointData::FromValues(Noise(s.Mesh, 2, seed));
+    for (const double weight : { 1.0, 0.1, 10.0, 0.01 })
+    {
+      const auto iterative = s.MakeTikhonov(data, weight / (h * h));
+      iterative->Advance(ProgressMonitor());
+      const auto model = s.MakeTikhonov(data, weight / (h * h), space);
+      EXPECT_LE(model->Advance(ProgressMonitor()).Iterations, weight < 0.1 ? 80 : 48) << weight;
+      EXPECT_LT((model->State() - iterative->State()).cwiseAbs().maxCoeff(), 1e-7) << weight;
+    }
+  }
+}
+
+TEST(TikhonovDeblurring, WeightsThatNeedManyStepsAndUnequalOnesAreFoundByConjugateGradients)
+{
+  const BlurredSphere s(4);
+  const double h = MeanEdge(s.Mesh) * s.Mesh.LengthUnit();
+  PointData data = PointData::FromValues(Noise(s.Mesh));
+  const auto compare = [&](double weight)
+  {
+    const auto iterative = s.MakeTikhonov(data, weight / (h * h));
+    iterative->Advance(ProgressMonitor());
+    const auto model = s.MakeTikhonov(data, weight / (h * h), std::make_shared<DeblurringSpace>());
+    model->Advance(ProgressMonitor());
+    EXPECT_LT((model->State() - iterative->State()).cwiseAbs().maxCoeff(), 1e-7) << weight;
+  };
+  compare(1e-6);
+  data.Missing.segment(40, 30) = true;
+  compare(1.0);
 }
 
 TEST(TotalVariationDeblurring, RestoresTheEdgeOfABlurredCap)

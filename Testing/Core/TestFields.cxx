@@ -264,6 +264,40 @@ TEST(RandomField, HasTheVarianceOfTheDenseOperator)
   }
 }
 
+// Fields of twice the width share the factors of all but three poles, and have the same variances.
+TEST(RandomField, WidthsThatShareTheirPolesHaveTheSameVariances)
+{
+  for (const Testing::Surface& s : { Strip(24, 9, 3.0, 1.0), Disk(8), Icosphere(3) })
+  {
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    SharedPoles shared;
+    RandomField::Settings settings;
+    for (settings.Width = 2.0 * MeanEdge(mesh); settings.Width * mesh.LengthUnit() < 8.0;
+         settings.Width *= 2.0)
+    {
+      const double t = settings.Width * settings.Width / (16.0 * std::log(2.0));
+      const Vector expected =
+        DenseFunction(*assembler, [&](double lambda) { return Heat(2.0 * t * lambda); }).diagonal();
+      const RandomField field(assembler, CotanWeights(mesh), settings,
+        Numbers(mesh.NumberOfVertices()), Vector(), SerialFor(), ProgressMonitor(), &shared);
+      const Vector found = field.Deviations().cwiseAbs2() / (8.0 * Pi * t);
+      EXPECT_LT((found - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 8e-4);
+      EXPECT_EQ(shared.Diagonals.size(), 14) << "those of a narrower field are forgotten";
+    }
+  }
+}
+
+TEST(RandomField, OfNoWidthIsWhiteNoiseOfVarianceOne)
+{
+  const auto assembler = MakeAssembler(Icosphere(4));
+  RandomField::Settings settings;
+  settings.Width = 0.0;
+  const Values fields = Draw(assembler, settings, 20);
+  EXPECT_NEAR(fields.cwiseAbs2().mean(), 1.0, 0.02);
+  EXPECT_LT(std::abs(fields.mean()), 0.02);
+}
+
 TEST(RandomField, CovarianceOnTheSphereIsTheSumOfLegendrePolynomials)
 {
   const Testing::Surface s = Icosphere(5);

@@ -211,6 +211,35 @@ TEST(Work, OfTotalVariationIsFewIterationsForAllKindsOfData)
   }
 }
 
+/// Of a hole that is filled, for weak and strong fidelity: the penalty does not grow as far as without one.
+TEST(Work, OfTotalVariationInAHoleIsSomeHundredIterations)
+{
+  for (const int subdivisions : { 4, 5 })
+  {
+    const Testing::Surface s = Icosphere(subdivisions);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    PointData data = PointData::FromValues(Sample(mesh, s,
+      [](const Eigen::RowVector3d& x) { return (x[0] > 0.1) + (x[2] > 0.3 ? 1.0 : 0.0); }));
+    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
+    {
+      if (s.Vertices(mesh.InputVertex()[i], 2) > std::cos(0.5))
+      {
+        data.Missing[i] = true;
+        data.Start(i, 0) = 0.9;
+      }
+    }
+    for (const double weight : { 0.5, 3.0, 12.0 })
+    {
+      const double fidelity = weight / (MeanEdge(mesh) * mesh.LengthUnit());
+      const StepReport report = MakeExact(assembler, data, ExactSettings(mesh, 0.0, fidelity, 1e-4))
+                                  ->Advance(ProgressMonitor());
+      EXPECT_LE(report.Residual, 1e-4);
+      EXPECT_LE(report.Iterations, 180) << subdivisions << ", " << weight;
+    }
+  }
+}
+
 /// To gaps of 1e-2, those of searches for a weight, and of 1e-3; the first guesses and the pace of the
 /// penalties are measured.
 TEST(Work, OfTotalGeneralizedVariationIsSomeHundredIterations)

@@ -48,10 +48,10 @@ HeatBlur::HeatBlur(std::shared_ptr<const Assembler> assembler, double width, int
   : Mesh(assembler->Mesh())
   , Parallel(parallel)
   , Steps(steps)
+  , Time(TimeOfWidth(width, steps) / steps)
   , System(assembler, std::move(solver), parallel)
 {
-  this->System.Assemble(this->Mesh.ControlAreas(), TimeOfWidth(width, steps) / steps,
-    CotanWeights(this->Mesh, parallel));
+  this->System.Assemble(this->Mesh.ControlAreas(), this->Time, CotanWeights(this->Mesh, parallel));
 }
 
 void HeatBlur::Prepare(const ProgressMonitor& progress)
@@ -60,24 +60,28 @@ void HeatBlur::Prepare(const ProgressMonitor& progress)
   this->Prepared = true;
 }
 
-void HeatBlur::Apply(Values& u, StepReport& report, const ProgressMonitor& progress)
+void HeatBlur::Step(Values& u, StepReport& report, const ProgressMonitor& progress)
 {
   if (!this->Prepared)
   {
     this->Prepare(progress.Part(0.0, 0.0));
   }
+  Resize(this->RightHandSide, u.rows(), u.cols());
+  ForEach(this->Parallel, this->Mesh.NumberOfVertices(),
+    [&](Index i) { this->RightHandSide.row(i) = this->Mesh.ControlAreas()[i] * u.row(i); });
+  this->System.Solve(this->RightHandSide, u, report, progress);
+}
+
+void HeatBlur::Apply(Values& u, StepReport& report, const ProgressMonitor& progress)
+{
   // Values are measured from the mean, which H keeps: the errors of a solve are relative to the
   // contrast then.
   FindMeans(this->Mesh, u, this->Mean, this->Parallel);
-  Resize(this->RightHandSide, u.rows(), u.cols());
   u.rowwise() -= this->Mean;
   for (int step = 0; step < this->Steps; ++step)
   {
-    ForEach(this->Parallel, this->Mesh.NumberOfVertices(),
-      [&](Index i) { this->RightHandSide.row(i) = this->Mesh.ControlAreas()[i] * u.row(i); });
     const double steps = this->Steps;
-    this->System.Solve(
-      this->RightHandSide, u, report, progress.Part(step / steps, (step + 1) / steps));
+    this->Step(u, report, progress.Part(step / steps, (step + 1) / steps));
   }
   u.rowwise() += this->Mean;
 }

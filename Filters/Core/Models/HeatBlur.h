@@ -32,6 +32,13 @@ public:
   /// otherwise.
   void Prepare(const ProgressMonitor& progress = ProgressMonitor());
 
+  /// The numbers N and tau/N.
+  int NumberOfSteps() const { return this->Steps; }
+  double StepTime() const { return this->Time; }
+
+  /// u becomes (M + tau/N K)^-1 M u, which is one of the steps.
+  void Step(Values& u, StepReport& report, const ProgressMonitor& progress = ProgressMonitor());
+
   /// u becomes H u. The solves are added to the report.
   void Apply(Values& u, StepReport& report, const ProgressMonitor& progress = ProgressMonitor());
 
@@ -43,6 +50,7 @@ private:
   const TriangleMesh& Mesh;
   const ParallelFor& Parallel;
   int Steps;
+  double Time;
   bool Prepared = false;
   ImplicitSystem System;
   Values RightHandSide;

@@ -9,6 +9,7 @@
 #include "Core/Solvers/ConjugateGradients.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -60,7 +61,8 @@ struct DeblurringSystem : SystemDefaults
 
 TikhonovDeblurring::TikhonovDeblurring(std::shared_ptr<const Assembler> assembler,
   CornerWeights coefficients, PointData data, double fidelity, std::unique_ptr<HeatBlur> blur,
-  std::shared_ptr<LinearSolver> solver, const IterationLimits& limits, const ParallelFor& parallel)
+  std::shared_ptr<LinearSolver> solver, const IterationLimits& limits, const ParallelFor& parallel,
+  std::shared_ptr<DeblurringSpace> space)
   : StateModel(data.Start)
   , Assembly(std::move(assembler))
   , Coefficients(std::move(coefficients))
@@ -72,6 +74,7 @@ TikhonovDeblurring::TikhonovDeblurring(std::shared_ptr<const Assembler> assemble
   , Limits(limits)
   , Parallel(parallel)
   , Conserved(this->Assembly->Mesh(), this->Data, true, parallel)
+  , Shared(std::move(space))
 {
   FixFreeComponents(this->Assembly->Mesh(), this->Data, fidelity);
 }
@@ -105,23 +108,55 @@ void TikhonovDeblurring::ApplyAdjoint(Values& v, StepReport& report) const
     [&](Index i) { v.row(i) *= this->Assembly->Mesh().ControlAreas()[i]; });
 }
 
+bool TikhonovDeblurring::IsFunction() const
+{
+  return this->Shared && this->Data.FidelityFactors.size() == 0 && !this->Data.Missing.any() &&
+    !this->Data.Fixed.any();
+}
+
+/// x = u for data f, both without a mean.
+SolveReport TikhonovDeblurring::ApplyFunction(
+  const Values& f, Values& x, StepReport& blurs, const ProgressMonitor& progress)
+{
+  constexpr int most = 96; // columns of the space: beyond, conjugate gradients take less memory
+  DeblurringSpace& shared = *this->Shared;
+  if (!shared.Space || shared.Data.cols() != f.cols() || shared.Data != f)
+  {
+    shared.Space.emplace(this->Assembly->Mesh(), this->Blur->StepTime(), f, this->Parallel);
+    shared.Data = f;
+  }
+  IterationLimits limits = this->Limits;
+  limits.MaximumNumberOfIterations = std::min(most, limits.MaximumNumberOfIterations);
+  const auto function = [&](double l)
+  {
+    const double h = std::pow(1.0 + this->Blur->StepTime() * l, -this->Blur->NumberOfSteps());
+    return this->FidelityWeight * h / (shared.Diffusivity * l + this->FidelityWeight * h * h);
+  };
+  return shared.Space->Apply(
+    function, [&](Values& y, const ProgressMonitor& part) { this->Blur->Step(y, blurs, part); },
+    limits, x, progress);
+}
+
 StepReport TikhonovDeblurring::Advance(const ProgressMonitor& progress)
 {
-  if (!this->Prepared)
-  {
-    this->Prepare(progress.Part(0.0, 0.15));
-  }
-  this->Solver->SetMatrix(this->Preconditioner, progress.Part(0.15, 0.3)); // others may share it
   const TriangleMesh& mesh = this->Assembly->Mesh();
   // Values are measured from the mean: the errors of a solve are relative to the contrast then.
   Eigen::RowVectorXd origin;
   FindMeans(mesh, this->Data.Start, origin, this->Parallel);
   StepReport report;
   StepReport blurs;
-  Values x = this->Data.Start.rowwise() - origin;
-  const SolveReport solve =
-    this->Solve(this->Data.Given.rowwise() - origin, x, blurs, progress.Part(0.3, 1.0));
-  RequireAnswer(solve, this->Limits);
+  Values x;
+  SolveReport solve;
+  solve.Converged = false;
+  if (this->IsFunction())
+  {
+    solve =
+      this->ApplyFunction(this->Data.Given.rowwise() - origin, x, blurs, progress.Part(0.0, 1.0));
+  }
+  if (!solve.Converged)
+  {
+    solve = this->Iterate(origin, x, blurs, progress);
+  }
   report.Add(solve);
   report.MissedResidual = std::max(report.MissedResidual, blurs.MissedResidual);
   this->U = x.rowwise() + origin;
@@ -135,6 +170,22 @@ StepReport TikhonovDeblurring::Advance(const ProgressMonitor& progress)
     });
   this->Conserved.Restore(mesh, this->U, this->Parallel);
   return report;
+}
+
+/// By conjugate gradients.
+SolveReport TikhonovDeblurring::Iterate(
+  const Eigen::RowVectorXd& origin, Values& x, StepReport& blurs, const ProgressMonitor& progress)
+{
+  if (!this->Prepared)
+  {
+    this->Prepare(progress.Part(0.0, 0.15));
+  }
+  this->Solver->SetMatrix(this->Preconditioner, progress.Part(0.15, 0.3)); // others may share it
+  x = this->Data.Start.rowwise() - origin;
+  SolveReport solve =
+    this->Solve(this->Data.Given.rowwise() - origin, x, blurs, progress.Part(0.3, 1.0));
+  RequireAnswer(solve, this->Limits);
+  return solve;
 }
 
 SolveReport TikhonovDeblurring::Solve(

@@ -39,8 +39,20 @@ PoleSum FitPoles(const std::function<double(double)>& g, double first, double la
   return sum;
 }
 
+int SharedPoles::NumberOf(double p) const
+{
+  return static_cast<int>(std::lround(std::log(p / this->First) / std::log(this->Ratio)));
+}
+
+double SharedPoles::Near(double p)
+{
+  this->First = this->First > 0.0 ? this->First : p;
+  return this->First * std::pow(this->Ratio, this->NumberOf(p));
+}
+
 Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coefficients, double s,
-  const PoleSum& f, const ParallelFor& parallel, const ProgressMonitor& progress)
+  const PoleSum& f, const ParallelFor& parallel, const ProgressMonitor& progress,
+  SharedPoles* shared)
 {
   const TriangleMesh& mesh = assembler.Mesh();
   Vector diagonal = Vector::Zero(mesh.NumberOfVertices());
@@ -52,15 +64,31 @@ Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coeffic
   const bool isRegular = IsRegular(matrix);
   constexpr double resolved = 1e-14;
   SupernodalFactor factor;
+  SharedPoles own;
+  std::map<int, Vector>& known = (shared ? *shared : own).Diagonals;
   const auto count = static_cast<double>(f.Poles.size());
   for (Eigen::Index j = 0; j < f.Poles.size(); ++j)
   {
     const double done = static_cast<double>(j);
-    assembler.Fill(matrix, f.Poles[j] * mesh.ControlAreas(), s, coefficients, nullptr, parallel);
-    factor.Compute(
-      matrix, isRegular, resolved, parallel, progress.Part(done / count, (done + 0.5) / count));
-    diagonal += f.Residues[j] *
-      factor.InverseDiagonal(parallel, progress.Part((done + 0.5) / count, (done + 1.0) / count));
+    Vector& inverse =
+      known[shared ? shared->NumberOf(f.Poles[j] / s) : static_cast<int>(j)]; // over s
+    if (inverse.size() == 0)
+    {
+      assembler.Fill(matrix, f.Poles[j] * mesh.ControlAreas(), s, coefficients, nullptr, parallel);
+      factor.Compute(
+        matrix, isRegular, resolved, parallel, progress.Part(done / count, (done + 0.5) / count));
+      inverse = s *
+        factor.InverseDiagonal(parallel, progress.Part((done + 0.5) / count, (done + 1.0) / count));
+    }
+    diagonal += f.Residues[j] / s * inverse;
+    if (!shared)
+    {
+      known.clear();
+    }
+  }
+  if (shared)
+  {
+    known.erase(known.upper_bound(shared->NumberOf(f.Poles[f.Poles.size() - 1] / s)), known.end());
   }
   return diagonal;
 }

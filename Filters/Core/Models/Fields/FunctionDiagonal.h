@@ -6,6 +6,7 @@
 #include "Core/Operators/Assembler.h"
 
 #include <functional>
+#include <map>
 
 namespace SurfaceDiffusion
 {
@@ -22,11 +23,25 @@ struct PoleSum
 /// `count` numbers from first to last with equal ratios.
 PoleSum FitPoles(const std::function<double(double)>& g, double first, double last, int count);
 
+/// Diagonals of (p M + K)^-1 at poles p that have equal ratios, which functions of several scales s
+/// share: their poles q over s are some of these.
+struct SharedPoles
+{
+  double First = 0.0; ///< p of number 0: the first one that is asked for
+  double Ratio = 1.0;
+  std::map<int, Vector> Diagonals; ///< by the number of p
+
+  int NumberOf(double p) const;
+  /// The nearest one.
+  double Near(double p);
+};
+
 /// The diagonal of f(s L) M^-1 with L = M^-1 K and f the sum of poles: per vertex. It is
 ///   sum_j c_j diag (q_j M + s K)^-1,
-/// by selected inversion of one factor after another. Throws Aborted, std::bad_alloc.
+/// by selected inversion of one factor after another. shared: of functions of growing scales; those that
+/// no larger one needs are forgotten. Throws Aborted, std::bad_alloc.
 Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coefficients, double s,
   const PoleSum& f, const ParallelFor& parallel = SerialFor(),
-  const ProgressMonitor& progress = ProgressMonitor());
+  const ProgressMonitor& progress = ProgressMonitor(), SharedPoles* shared = nullptr);
 
 } // namespace SurfaceDiffusion

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Models/Fields/FunctionDiagonal.h"
 #include "Core/Models/Fields/ResolventPolynomial.h"
 
 #include <cstdint>
@@ -35,18 +36,21 @@ public:
   struct Settings
   {
     FieldCovariance Covariance = FieldCovariance::Gaussian;
-    double Width = 1.0; ///< full width at half maximum of the kernel of Gaussian, above 0
+    /// Full width at half maximum of the kernel of Gaussian; 0: white noise of variance 1 at each vertex
+    double Width = 1.0;
     double Range = 1.0; ///< of Matern, above 0: sqrt(8 nu) / kappa, where the correlation is 0.14
     int Nu = 1; ///< of Matern: 1 or 3
     bool HasUnitVariance = true; ///< at each vertex, rather than on the plane
   };
 
   /// ids: a number per vertex, of which its random numbers are functions. Lengths are in the units
-  /// of the mesh. deviations: Deviations() of fields with these settings; no row: they are found.
+  /// of the mesh. shared: of fields of several Gaussian widths, which are made in ascending order: each
+  /// twice as wide as the one before needs 3 factors. deviations: Deviations() of fields with these settings; no row: they are found.
   /// Throws Aborted.
   RandomField(std::shared_ptr<const Assembler> assembler, const CornerWeights& coefficients,
     const Settings& settings, std::vector<std::int64_t> ids, Vector deviations = Vector(),
-    const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor());
+    const ParallelFor& parallel = SerialFor(), const ProgressMonitor& progress = ProgressMonitor(),
+    SharedPoles* shared = nullptr);
 
   /// Fields first, first + 1, ... of a seed as the columns of `fields`, n x count. The numbers of a
   /// field depend on the seed and on its own number, not on which others are drawn. Throws
@@ -59,7 +63,7 @@ public:
   const Vector& Deviations() const { return this->RelativeDeviations; }
 
   /// Of the last Draw(): see ResolventPolynomial.
-  double MissedResidual() const { return this->Operator->MissedResidual(); }
+  double MissedResidual() const { return this->Operator ? this->Operator->MissedResidual() : 0.0; }
 
 private:
   std::shared_ptr<const Assembler> Assembly;
@@ -67,7 +71,7 @@ private:
   std::vector<std::int64_t> Ids;
   double DeviationOnPlane = 1.0;
   Vector RelativeDeviations;
-  std::optional<ResolventPolynomial> Operator;
+  std::optional<ResolventPolynomial> Operator; ///< none of white noise
 };
 
 } // namespace SurfaceDiffusion

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace SurfaceDiffusion
@@ -19,6 +20,18 @@ struct PenaltyPace
   static constexpr double MostGrowth = 4.0; ///< at a time
   static constexpr int MostChecks = 3; ///< without a smaller gap
 
+  /// share: of the area, where there are no data. The energy is not strongly convex there, and what the
+  /// hole is filled with hardly moves under a large penalty: 260 iterations in place of 650 to 10,000
+  /// were measured. In a small hole it has a shorter way.
+  static double LargestGrowth(double share)
+  {
+    constexpr double ofHoles = 6.0;
+    constexpr double ofSmall = 1.5;
+    return share > 0.0 ? std::max(ofHoles, ofSmall / std::sqrt(share))
+                       : std::numeric_limits<double>::infinity();
+  }
+
+  double Largest = std::numeric_limits<double>::infinity(); ///< of Growth
   double Reduction = 0.1; ///< of the residual of the quadratic problem, with a growing penalty
   double Growth = 1.0; ///< of the penalty
   double Smallest = std::numeric_limits<double>::infinity(); ///< gap
@@ -31,7 +44,8 @@ struct PenaltyPace
     {
       this->Smallest = gap;
       this->ChecksSinceSmallest = 0;
-      this->Growth = std::min(this->Growth + rate * IterationsPerCheck, MostGrowth * this->Growth);
+      this->Growth = std::min({ this->Growth + rate * IterationsPerCheck, MostGrowth * this->Growth,
+        std::max(this->Largest, this->Growth) });
       return;
     }
     ++this->ChecksSinceSmallest;

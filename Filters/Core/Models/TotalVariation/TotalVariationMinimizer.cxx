@@ -105,6 +105,7 @@ TotalVariationMinimizer::TotalVariationMinimizer(std::shared_ptr<const Assembler
   this->GrowthRate = stiffness > 0.0
     ? GrowthFactor * SquaredEdgeOverHeight * this->Vertices->QuadraticWeight() / stiffness
     : 0.0;
+  this->LargestGrowth = PenaltyPace::LargestGrowth(this->Vertices->ShareWithoutData());
   this->Assembly->TakePattern(this->Matrix, parallel);
 }
 
@@ -128,6 +129,7 @@ TotalVariationMinimizer::Report TotalVariationMinimizer::Minimize(const Values& 
   const bool grows = this->GrowthRate > 0.0;
   Report report;
   PenaltyPace pace;
+  pace.Largest = this->LargestGrowth;
   double fraction = 0.0;
   while (true)
   {

@@ -86,6 +86,7 @@ private:
   Vector Diagonal; ///< likewise
   Values ColumnShifts; ///< more of it in each column, of an interface vertex in its owner only
   double GrowthRate; ///< of the penalty per iteration, in first penalties
+  double LargestGrowth; ///< of the penalty, see PenaltyPace
   SparseMatrix Matrix; ///< of the quadratic problem for u
   QuadraticDescent Descent;
   Values RightHandSide, Load;

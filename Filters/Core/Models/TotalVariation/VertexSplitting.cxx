@@ -69,6 +69,18 @@ double VertexSplitting::QuadraticWeight() const
     [&](Index i) { return this->Areas[i] * this->Quadratic.row(i).minCoeff(); });
 }
 
+double VertexSplitting::ShareWithoutData() const
+{
+  const double area = this->OverProcesses.SumOverVertices(
+    this->Parallel, this->NumberOfVertices(), [&](Index i) { return this->Areas[i]; });
+  const double without =
+    this->OverProcesses.SumOverVertices(this->Parallel, this->NumberOfVertices(),
+      [&](Index i) {
+        return !this->Fixed[i] && !(this->Quadratic.row(i).minCoeff() > 0.0) ? this->Areas[i] : 0.0;
+      });
+  return area > 0.0 ? without / area : 0.0;
+}
+
 void VertexSplitting::Start(const Values& g, const Values& f, const Values& u, bool keepMultipliers)
 {
   this->G = &g;

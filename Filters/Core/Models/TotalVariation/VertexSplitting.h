@@ -32,6 +32,7 @@ public:
   Values MakeColumnShifts() const override;
   /// Of the column with the least.
   double QuadraticWeight() const override;
+  double ShareWithoutData() const override;
   bool IsSplit() const override { return this->HasAbsolute; }
   void Start(const Values& g, const Values& f, const Values& u, bool keepMultipliers) override;
   void Update(const Values& u, double relaxation) override;

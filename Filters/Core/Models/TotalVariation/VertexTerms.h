@@ -31,6 +31,8 @@ public:
 
   /// Sum over the vertices of the surface of the second derivatives of the quadratic terms.
   virtual double QuadraticWeight() const { return 0.0; }
+  /// The share of the area of vertices that are not fixed and have no such term.
+  virtual double ShareWithoutData() const { return 0.0; }
 
   /// Whether there are multipliers c.
   virtual bool IsSplit() const = 0;
