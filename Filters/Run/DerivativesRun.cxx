@@ -162,6 +162,7 @@ void DerivativesRun::Update(
   this->MissedResidual = 0.0;
   this->Undetermined = 0;
   this->NothingKnown = Sentence();
+  this->OfTurns = Sentence();
   const Surface& surface = *this->Domain;
   const TriangleMesh& mesh = surface.InputMesh();
   const Points positions = VertexPositions(surface);
@@ -326,6 +327,17 @@ void DerivativesRun::AddVelocity(Values gradients, const Values& turns, bool onT
     this->Add(name, std::move(rows), onTriangles);
     this->Results.back().IsBesideResult = true;
   };
+  constexpr double many = 0.1;
+  const auto undetermined = static_cast<double>((turns.array().abs() > largestTurn).count());
+  if (undetermined > many * static_cast<double>(turns.size()))
+  {
+    this->OfTurns << "fronts turn within an edge at "
+                  << std::round(100.0 * undetermined / static_cast<double>(turns.size()))
+                  << " % of the " << (onTriangles ? "triangles" : "points")
+                  << ", where the speed is not determined; use a finer surface or, of times with "
+                     "noise, set "
+                  << Word::Setting("SmoothingFWHM");
+  }
   add("Speed", std::move(speeds));
   add("Collision", (turns.array() < -largestTurn).cast<double>());
   add("Focus", (turns.array() > largestTurn).cast<double>());
@@ -417,9 +429,12 @@ std::vector<Warning> DerivativesRun::FindOwnWarnings() const
          "a finer surface";
     warnings.push_back({ text, this->SurfaceVersion });
   }
-  if (!this->NothingKnown.Words().empty())
+  for (const Sentence& text : { this->NothingKnown, this->OfTurns })
   {
-    warnings.push_back({ this->NothingKnown, this->SurfaceVersion });
+    if (!text.Words().empty())
+    {
+      warnings.push_back({ text, this->SurfaceVersion });
+    }
   }
   return warnings;
 }

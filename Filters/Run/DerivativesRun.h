@@ -73,6 +73,7 @@ private:
   bool IsMissingKnown = false;
   std::vector<char> MissingRows; ///< per point or cell: not finite; empty if none is
   bool MissingOnCells = false;
+  Sentence OfTurns; ///< a warning of speeds that are not determined; otherwise empty
   Sentence NothingKnown; ///< the warning that no triangle has data; otherwise empty
   Index Turned = 0;
   Index Undetermined = 0; ///< vertices whose Laplacian is NaN

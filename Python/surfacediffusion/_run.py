@@ -234,7 +234,7 @@ _FOUND = {
 #: Settings in place of which another one acts, unless this is 0 or off, without a warning.
 _REPLACED = {
     "heat": {"time_step": ("fwhm", "mode"), "fidelity_weight": ("automatic_fidelity",)},
-    "intrinsic_tv": {"time_step": ("mode",), "fidelity_weight": ("automatic_fidelity",)},
+    "intrinsic_tv": {"time_step": ("mode",)},
     "turing_texture": {"time_step": ("automatic_time_step",)},
     "segment": {"means": ("automatic_means",)},
     "interpolate": {"smoothing": ("automatic_smoothing", "exact")},

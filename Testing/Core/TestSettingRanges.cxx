@@ -171,8 +171,7 @@ TEST(SettingRanges, OfMinimisersExcludeEnergiesThatAreNotConvex)
 {
   using Change = void (*)(TotalVariationSettings&);
   const Change purposes[] = { [](auto& s) { s.Mode = TotalVariationMode::SteadyState; },
-    [](auto& s) { s.TimeIntegrator = TimeIntegrator::Implicit; },
-    [](auto& s) { s.AutomaticFidelity = true; } };
+    [](auto& s) { s.TimeIntegrator = TimeIntegrator::Implicit; } };
   const std::pair<Change, const char*> cases[] = {
     { [](auto& s) { s.EdgeFunction = EdgeFunctionKind::PeronaMalikExponential; },
       "EdgeFunction is 1; allowed" },
@@ -200,8 +199,6 @@ TEST(SettingRanges, OfSearchesBlurAndColourModelsExcludeOtherModels)
 {
   using Change = void (*)(TotalVariationSettings&);
   const std::pair<Change, const char*> cases[] = {
-    { [](auto& s) { s.AutomaticFidelity = true, s.FidelityNorm = FidelityNorm::L1; },
-      "FidelityNorm is 1; allowed: 0 L2 together with AutomaticFidelity" },
     { [](auto& s) { s.Color.Model = ColorModel::Opponent, s.FidelityNorm = FidelityNorm::L1; },
       "FidelityNorm is 1; allowed: 0 L2" },
     { [](auto& s) { s.Blur.FWHM = 1.0; }, "Mode is 0; allowed: 1 SteadyState together with" },

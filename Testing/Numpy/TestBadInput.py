@@ -161,7 +161,7 @@ CASES = [
      r"time_step is 2, but fwhm is 1, which takes its place; allowed: one of them"),
     (lambda: sd.heat(BODY, Z, mode="steady_state", fidelity_weight=1, time_step=2),
      r"time_step is 2, but mode is 'steady_state', which takes its place; allowed: one of them"),
-    (lambda: sd.intrinsic_tv(BODY, Z, automatic_fidelity=True, fidelity_weight=2),
+    (lambda: sd.heat(BODY, Z, mode="steady_state", automatic_fidelity=True, fidelity_weight=2),
      r"fidelity_weight is 2, but automatic_fidelity is True, which takes its place; allowed: one of them"),
     (lambda: sd.turing_texture(BODY, time_step=1, automatic_time_step=True),
      r"time_step is 1, but automatic_time_step is True, which takes its place; allowed: one of them"),

@@ -78,6 +78,8 @@ def without_frame(result):
     """What does not change with a rotation."""
     if isinstance(result, sd.States):
         result = [*result][-1]
+    if hasattr(result, "collision"):  # and there the speed is NaN
+        result = np.where(result.collision | result.focus, 0.0, result.speed)
     for name in ("longest_edge", "heights", "length", "area", "speed", "variance", "pooled", "mean", "values"):
         if not hasattr(result, "toarray") and not isinstance(result, np.ndarray):
             result = getattr(result, name, result)

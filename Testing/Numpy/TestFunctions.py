@@ -823,7 +823,7 @@ class Restoration(unittest.TestCase):
             self.assertEqual(weight(fidelity_weight=given), given)
         self.assertEqual(weight(automatic_fidelity=False), 3.0)
         self.assertEqual(weight(automatic_blur_fidelity=False), 3.0)
-        self.assertEqual(weight(fidelity_weight=3, automatic_blur_fidelity=True), found)
+        self.assertEqual(weight(fidelity_weight=3, automatic_fidelity=True), found)
 
 
 if __name__ == "__main__":

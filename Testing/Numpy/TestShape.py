@@ -198,7 +198,7 @@ class RefineTo(unittest.TestCase):
         steps = {"number_of_time_steps": 2}
         cases = {
             "heat": dict(values=z, fwhm=0.5, mask=mask, directions=up, fixed=z < -0.8),
-            "intrinsic_tv": dict(values=faces, **steps),
+            "intrinsic_tv": dict(values=faces, fidelity_weight=3, **steps),
             "tensor_diffusion": dict(values=z, **steps), "mumford_shah": dict(values=z, edge_threshold=0.3, **steps),
             "harmonic_map": dict(vectors=self.ball.points, **steps),
             "turing_texture": dict(initial=np.column_stack([4 + z, 4 - z]), **steps),

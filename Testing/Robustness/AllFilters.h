@@ -280,6 +280,7 @@ inline std::vector<FilterKind> AllFilters()
       [](TV* f)
       {
         f->SetModeToSteadyState();
+        f->AutomaticFidelityOff();
         SetInputArray(f, 0, "c", true);
         SetInputArray(f, 5, "weights", true);
       }),

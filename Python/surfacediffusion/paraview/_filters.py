@@ -350,7 +350,8 @@ class Distance(RunFilter):
     def begin(self, inputs: Any) -> None:
         RunFilter.begin(self, inputs)
         data = self._find_input(inputs, 2)
-        self.path_points, problems = (None, []) if data is None else read_sources(
+        nothing: tuple[Any, list[str]] = (None, [])
+        self.path_points, problems = nothing if data is None else read_sources(
             data, "the third input, the path points")
         self.problems_of_points = self.problems_of_points + problems
 
