@@ -288,7 +288,7 @@ NoiseEstimate ColumnSearch::Estimate(VertexRange range, Notes& notes)
   }
   const auto estimate = [&](VertexRange vertices)
   {
-    constexpr Index fewest = 30; // of fewer an estimate, and the risk, are those of the signal
+    constexpr Index fewest = 40; // of fewer an estimate, and the risk, are those of the signal
     NoiseEstimate found;
     found.IsUndetermined = vertices.Size() < fewest;
     return found.IsUndetermined

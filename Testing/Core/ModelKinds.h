@@ -96,6 +96,10 @@ ModelKind MakeKind(std::string name, int steps, std::function<void(ModelSettings
       {
         settings->NumberOfTimeSteps = steps;
       }
+      if constexpr (std::is_same_v<TotalVariationSettings, ModelSettings>)
+      {
+        settings->AutomaticFidelity = false; // some kinds turn it on, which takes longer
+      }
       if (set)
       {
         set(*settings);
@@ -195,7 +199,9 @@ inline std::vector<ModelKind> AllModelKinds()
       "TotalVariationPerChannel", 2, [](TV& s) { s.ChannelCoupling = ChannelCoupling::PerChannel; },
       Content::Colors),
     MakeKind<TV>("TotalVariationDirected", 2, [](TV& s) { s.AcrossDiffusivity = 0.2; }),
-    MakeKind<TV>("TotalVariationOnCells", 4, {}, Content::ScalarsOnCells),
+    MakeKind<TV>(
+      "TotalVariationOnCells", 2, [](TV& s) { s.AutomaticFidelity = true; },
+      Content::ScalarsOnCells),
     MakeKind<TV>("TotalVariationLaggedL1", 2, [](TV& s) { s.FidelityNorm = FidelityNorm::L1; }),
     MakeKind<TV>(
       "PeronaMalik", 2, [](TV& s) { s.EdgeFunction = EdgeFunctionKind::PeronaMalikRational; },

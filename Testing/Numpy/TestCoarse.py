@@ -80,6 +80,10 @@ def without_frame(result):
         result = [*result][-1]
     if hasattr(result, "collision"):  # and there the speed is NaN
         result = np.where(result.collision | result.focus, 0.0, result.speed)
+    if isinstance(result, sd.Bodies):
+        result = np.array([(body.area, body.volume) for body in result.table])
+    if isinstance(result, sd.WeldedSurface):
+        result = np.sort(result.points)
     for name in ("longest_edge", "heights", "length", "area", "speed", "variance", "pooled", "mean", "values"):
         if not hasattr(result, "toarray") and not isinstance(result, np.ndarray):
             result = getattr(result, name, result)

@@ -66,6 +66,10 @@ FilterKind MakeKind(
       {
         filter->SetNumberOfTimeSteps(steps);
       }
+      if constexpr (std::is_same_v<vtkIntrinsicTVFilter, Filter>)
+      {
+        filter->AutomaticFidelityOff(); // some kinds turn it on, which takes longer
+      }
       set(filter);
       return filter;
     },
@@ -264,12 +268,18 @@ inline std::vector<FilterKind> AllFilters()
     Slow(MakeKind<TV>("TVDeblurredFound", "fTV", 1,
       [](TV* f)
       {
+        f->AutomaticFidelityOn();
         f->SetModeToSteadyState();
         f->SetBlurFWHM(0.3);
         f->SetNoiseLevel(0.3);
         f->SetStopTolerance(0.1);
       })),
-    MakeKind<TV>("TVOfCells", "cTV", 2, [](TV* f) { SetInputArray(f, 0, "c", true); }),
+    MakeKind<TV>("TVOfCells", "cTV", 2,
+      [](TV* f)
+      {
+        f->AutomaticFidelityOn();
+        SetInputArray(f, 0, "c", true);
+      }),
     MakeKind<TV>("TVWeighted", "fTV", 1,
       [](TV* f)
       {
@@ -280,7 +290,6 @@ inline std::vector<FilterKind> AllFilters()
       [](TV* f)
       {
         f->SetModeToSteadyState();
-        f->AutomaticFidelityOff();
         SetInputArray(f, 0, "c", true);
         SetInputArray(f, 5, "weights", true);
       }),
