@@ -274,12 +274,7 @@ inline std::vector<FilterKind> AllFilters()
         f->SetNoiseLevel(0.3);
         f->SetStopTolerance(0.1);
       })),
-    MakeKind<TV>("TVOfCells", "cTV", 2,
-      [](TV* f)
-      {
-        f->AutomaticFidelityOn();
-        SetInputArray(f, 0, "c", true);
-      }),
+    MakeKind<TV>("TVOfCells", "cTV", 2, [](TV* f) { SetInputArray(f, 0, "c", true); }),
     MakeKind<TV>("TVWeighted", "fTV", 1,
       [](TV* f)
       {

@@ -120,6 +120,8 @@ SolveReport TikhonovDeblurring::ApplyFunction(
 {
   constexpr int most = 96; // columns of the space: beyond, conjugate gradients take less memory
   DeblurringSpace& shared = *this->Shared;
+  // Models of other weights share the solver, and its matrix may be that of one that is gone.
+  this->Blur->Prepare(progress.Part(0.0, 0.0));
   if (!shared.Space || shared.Data.cols() != f.cols() || shared.Data != f)
   {
     shared.Space.emplace(this->Assembly->Mesh(), this->Blur->StepTime(), f, this->Parallel);
