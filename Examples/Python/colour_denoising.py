@@ -54,6 +54,7 @@ def linear(surface):
 
 def total_variation(surface):
     model = prepared(vtkIntrinsicTVFilter(), surface)
+    model.AutomaticFidelityOff()  # all weights are tried
     model.SetModeToSteadyState()
     model.SetStopTolerance(2e-3)  # within 0.03 dB of the minimiser
     return model

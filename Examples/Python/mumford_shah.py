@@ -104,6 +104,7 @@ def steady_heat():
 
 def minimiser():
     model = vtkIntrinsicTVFilter()
+    model.AutomaticFidelityOff()  # all weights are tried
     model.SetModeToSteadyState()
     model.SetStopTolerance(1e-2)
     return model
