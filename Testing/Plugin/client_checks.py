@@ -285,7 +285,7 @@ def check_macro():
     """Checks the picture of the example that a macro of Examples/ParaView shows."""
     source, view = GetActiveSource(), render_view()
     name, slip = {
-        "Inpainted": ("Inpaint", {"HoldKnownValues": 0}),
+        "Inpainted": ("Inpaint", {"HoldKnownValues": 0, "FidelityWeight": 4.0}),
         "Denoised": ("Denoise", {}),
         "Edges": ("Edges", {"AutomaticThreshold": 0, "EdgeThreshold": 0.9}),
         "Denoised mesh": ("DenoiseMesh", {"SurfaceType": "Organic"}),

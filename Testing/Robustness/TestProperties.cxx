@@ -282,6 +282,12 @@ vtkSmartPointer<vtkPolyDataAlgorithm> MakeFor(
   SetInputArray(filter, 0, isTexture ? "" : isRelief ? "height" : isDistance ? "few" : "f");
   SetInputArray(filter, 1, "mask");
   SetInputArray(filter, 2, "e1");
+  if (auto* const tv = vtkIntrinsicTVFilter::SafeDownCast(filter)) // its search takes long
+  {
+    const bool isOfSearch =
+      property.Name.find("Fidelity") != std::string::npos || property.Name == "NoiseLevel";
+    tv->SetAutomaticFidelity(isOfSearch);
+  }
   for (const std::string& name : { property.Name, kind.Name + " " + property.Name })
   {
     const auto found = needed.find(name);

@@ -110,8 +110,12 @@ void TikhonovDeblurring::ApplyAdjoint(Values& v, StepReport& report) const
 
 bool TikhonovDeblurring::IsFunction() const
 {
-  return this->Shared && this->Data.FidelityFactors.size() == 0 && !this->Data.Missing.any() &&
-    !this->Data.Fixed.any();
+  // Of steps that move nothing, or all, round-off hides the function.
+  constexpr double least = 1e-3, most = 1e3; // in squares of h
+  const double h = this->Assembly->Mesh().MeanEdgeLength();
+  const double step = this->Blur->StepTime() / (h * h);
+  return this->Shared && step >= least && step <= most && this->Data.FidelityFactors.size() == 0 &&
+    !this->Data.Missing.any() && !this->Data.Fixed.any();
 }
 
 /// x = u for data f, both without a mean.
