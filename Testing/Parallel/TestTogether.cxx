@@ -29,6 +29,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <type_traits>
 
 using namespace Pieces;
 
@@ -146,6 +147,10 @@ Case MakeCase(
     [=]() -> AnyFilter
     {
       auto filter = Make<Filter>(array, steps);
+      if constexpr (std::is_same_v<vtkIntrinsicTVFilter, Filter>)
+      {
+        filter->AutomaticFidelityOff(); // its search gathers the surface
+      }
       set(filter);
       return filter;
     },
