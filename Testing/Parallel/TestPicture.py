@@ -19,7 +19,7 @@ rank = controller.GetLocalProcessId()
 source = TrivialProducer()
 source.GetClientSideObject().SetOutput(
     pieces.split(pieces.make_surface(), controller.GetNumberOfProcesses(), "slabs")[rank])
-denoised = IntrinsicTVFilter(source, NumberOfTimeSteps=20)
+denoised = IntrinsicTVFilter(source, AutomaticFidelity=0, NumberOfTimeSteps=20)
 view = CreateRenderView(ViewSize=[300, 300], OrientationAxesVisibility=0, UseLight=0)
 view.CameraPosition = [4, -8, 14]
 view.CameraViewUp = [0, 0, 1]
