@@ -97,6 +97,7 @@ NB_MODULE(_core, m)
   m.def(
     "list_settings", [](const std::string& model) { return ListSettings(*MakeSettings(model)); },
     "model"_a);
+  m.def("list_found", &ListFound, "model"_a);
   m.def(
     "find_problems",
     [](const std::string& model, const nb::dict& settings, const PythonFields* fields)

@@ -8,6 +8,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <sstream>
 #include <utility>
 
 namespace nb = nanobind;
@@ -183,6 +184,18 @@ nb::list ListSettings(Settings& settings)
   Lister lister;
   settings.Visit(lister);
   return lister.Entries;
+}
+
+nb::dict ListFound(const std::string& model)
+{
+  nb::dict found;
+  const NamedSettings* const settings = FindModel(model);
+  std::istringstream words(settings ? settings->Found : "");
+  for (std::string name, off; words >> name >> off;)
+  {
+    found[nb::cast(name)] = off;
+  }
+  return found;
 }
 
 void AssignSettings(Settings& settings, const nb::dict& values)

@@ -24,6 +24,10 @@ std::unique_ptr<RunSettings> MakeRunSettings(const std::string& model);
 /// One dict per setting: name, unit, documentation, is_of_output, kind, default, allowed and words.
 nanobind::list ListSettings(Settings& settings);
 
+/// The settings that are found from the data unless they are given, and the switch of each: see
+/// NamedSettings::Found.
+nanobind::dict ListFound(const std::string& model);
+
 /// Set those settings that the dict has: a number, a bool, or the index of a word.
 void AssignSettings(Settings& settings, const nanobind::dict& values);
 

@@ -222,15 +222,6 @@ class Input(Given):
         run.write(block, number, output, self.core, first, self.integers)
 
 
-#: Settings that are found from the data unless they are given, and the switches of that.
-_FOUND = {
-    "intrinsic_tv": {"fidelity_weight": "automatic_fidelity"},
-    "segment": {"means": "automatic_means", "fidelity_weight": "automatic_fidelity"},
-    "interpolate": {"smoothing": "automatic_smoothing"},
-    "mumford_shah": {"edge_threshold": "automatic_threshold", "smoothing_length": "automatic_threshold"},
-}
-
-
 #: Settings in place of which another one acts, unless this is 0 or off, without a warning.
 _REPLACED = {
     "heat": {"time_step": ("fwhm", "mode"), "fidelity_weight": ("automatic_fidelity",)},
@@ -267,7 +258,7 @@ class Runner:
     def __init__(self, function: str, properties: Mapping[str, Any], arrays: Mapping[str, str]):
         self.function, self.arrays = function, arrays
         _refuse_replaced(function, properties)
-        off = {switch: False for name, switch in _FOUND.get(function, {}).items() if name in properties}
+        off = {switch: False for name, switch in _core.list_found(function).items() if name in properties}
         self.settings = convert_all(function, {**off, **properties})
         if function == "heat" and not (
                 properties.get("fwhm") or {"time_step", "mode"} & set(properties)):
