@@ -3,6 +3,7 @@
 #include "ShapeFunctions.h"
 
 #include "Core/Geometry/Bodies.h"
+#include "Core/Geometry/OpenEdges.h"
 #include "Core/Geometry/Relief.h"
 #include "Core/Geometry/ReliefSolids.h"
 #include "Core/Geometry/Welding.h"

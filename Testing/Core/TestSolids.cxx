@@ -3,6 +3,7 @@
 #include "BlockParts.h"
 
 #include "Core/Geometry/Bodies.h"
+#include "Core/Geometry/OpenEdges.h"
 #include "Core/Geometry/ReliefSolids.h"
 #include "Core/Geometry/Welding.h"
 #include "Core/Surface/EdgeRefinement.h"

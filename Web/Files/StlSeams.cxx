@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Files/Stl.h"
 
-#include "Core/Geometry/Welding.h"
+#include "Core/Geometry/OpenEdges.h"
 
 #include <algorithm>
 #include <cmath>

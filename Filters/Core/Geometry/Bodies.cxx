@@ -3,9 +3,8 @@
 #include "Core/Geometry/Bodies.h"
 
 #include "Core/Foundation/DisjointSets.h"
-#include "Core/Geometry/Ray.h"
 #include "Core/Geometry/TriangleOrientation.h"
-#include "Core/Geometry/TriangleTree.h"
+#include "Core/Geometry/Windings.h"
 
 #include <cmath>
 #include <cstddef>
@@ -21,21 +20,8 @@ namespace
 using Vector3 = Eigen::Vector3d;
 using Box = TriangleTree::Box;
 
-/// Nearer places touch, over the size of the surface.
-constexpr double Touching = 1e-6;
 /// Vertices of a shell that may touch others, before its first vertex decides.
 constexpr Index Tries = 16;
-
-Vector3 Corner(const Points& points, const Triangles& faces, Index t, int a)
-{
-  return points.row(faces(t, a)).transpose();
-}
-
-Vector3 DoubledNormal(const Points& points, const Triangles& faces, Index t)
-{
-  const Vector3 a = Corner(points, faces, t, 0);
-  return (Corner(points, faces, t, 1) - a).cross(Corner(points, faces, t, 2) - a);
-}
 
 /// Sets of triangles that edges connect.
 struct Shells
@@ -73,10 +59,10 @@ struct Shells
       const Vector3 normal = DoubledNormal(points, faces, t);
       ++body.Triangles;
       body.Area += 0.5 * normal.norm();
-      body.Volume += (Corner(points, faces, t, 0) - center.transpose()).dot(normal) / 6.0;
+      body.Volume += (CornerPlace(points, faces, t, 0) - center.transpose()).dot(normal) / 6.0;
       for (int a = 0; a < 3; ++a)
       {
-        this->Bounds[static_cast<std::size_t>(shell)].extend(Corner(points, faces, t, a));
+        this->Bounds[static_cast<std::size_t>(shell)].extend(CornerPlace(points, faces, t, a));
       }
     }
     ForEachEdge(sides,
@@ -95,128 +81,6 @@ struct Shells
   std::vector<Body> Table;
   std::vector<Index> First; ///< triangle of each
   std::vector<Box> Bounds;
-};
-
-/// How often sets of triangles go around a place.
-class Windings
-{
-public:
-  /// setOf: per triangle, -1 for those that do not count.
-  Windings(const Points& points, const Triangles& faces, const std::vector<Index>& setOf)
-    : Places(points)
-    , Faces(faces)
-    , SetOf(setOf)
-    , Tree(points, faces)
-    , Tolerance(Touching * this->Tree.Bounds().diagonal().norm())
-  {
-  }
-
-  using Sums = std::vector<std::pair<Index, int>>; ///< of each set
-
-  /// Of the sets that a line in general position meets; 0 for all others.
-  Sums At(const Vector3& place) const
-  {
-    Sums sums;
-    const Ray ray(place, Vector3(0.5773, 0.2113, 0.7887).normalized());
-    this->Tree.Visit([&](const Box& box)
-      { return ray.Meets(box, 0.0, std::numeric_limits<double>::max()); },
-      [&](Index t)
-      {
-        const Vector3 normal = DoubledNormal(this->Places, this->Faces, t);
-        if (this->SetOf[static_cast<std::size_t>(t)] >= 0 && this->Distance(ray, t, normal) >= 0.0)
-        {
-          Add(sums, this->SetOf[static_cast<std::size_t>(t)], normal.dot(ray.Way) > 0.0 ? 1 : -1);
-        }
-      });
-    return sums;
-  }
-
-  bool Touches(const Vector3& place, Index set) const
-  {
-    bool touches = false;
-    const double square = this->Tolerance * this->Tolerance;
-    this->Tree.Visit([&](const Box& box)
-      { return !touches && box.squaredExteriorDistance(place) <= square; },
-      [&](Index t)
-      {
-        touches = touches ||
-          (this->SetOf[static_cast<std::size_t>(t)] == set &&
-            (NearestInTriangle(place, Corner(this->Places, this->Faces, t, 0),
-               Corner(this->Places, this->Faces, t, 1), Corner(this->Places, this->Faces, t, 2)) -
-              place)
-                .squaredNorm() <= square);
-      });
-    return touches;
-  }
-
-  /// A set other than `own` that the place is inside of and does not touch; -1 for none.
-  Index Around(const Vector3& place, Index own) const
-  {
-    Index found = -1;
-    for (const auto& [set, sum] : this->At(place))
-    {
-      found = set != own && sum > 0 && !this->Touches(place, set) ? set : found;
-    }
-    return found;
-  }
-
-  /// visit(set) for the sets that the line from a to b enters or leaves.
-  template <typename Visitor>
-  void VisitBetween(const Vector3& a, const Vector3& b, Index own, const Visitor& visit) const
-  {
-    const double length = (b - a).norm();
-    if (!(length > 0.0))
-    {
-      return;
-    }
-    const Ray ray(a, (b - a) / length);
-    this->Tree.Visit([&](const Box& box) { return ray.Meets(box, 0.0, length); },
-      [&](Index t)
-      {
-        const Vector3 normal = DoubledNormal(this->Places, this->Faces, t);
-        const double distance = this->Distance(ray, t, normal);
-        const double height = std::abs(normal.dot(ray.Way)) / normal.norm();
-        const double step = 2.0 * this->Tolerance / height;
-        const Index set = this->SetOf[static_cast<std::size_t>(t)];
-        if (set >= 0 && set != own && distance > step && distance + step < length)
-        {
-          for (const double way : { -step, step })
-          {
-            const Index around = this->Around(a + (distance + way) * ray.Way, own);
-            if (around >= 0)
-            {
-              visit(around);
-            }
-          }
-        }
-      });
-  }
-
-private:
-  double Distance(const Ray& ray, Index t, const Vector3& normal) const
-  {
-    return ray.DistanceTo(Corner(this->Places, this->Faces, t, 0),
-      Corner(this->Places, this->Faces, t, 1), Corner(this->Places, this->Faces, t, 2), normal);
-  }
-
-  static void Add(Sums& sums, Index set, int sign)
-  {
-    for (auto& [known, sum] : sums)
-    {
-      if (known == set)
-      {
-        sum += sign;
-        return;
-      }
-    }
-    sums.emplace_back(set, sign);
-  }
-
-  const Points& Places;
-  const Triangles& Faces;
-  const std::vector<Index>& SetOf;
-  TriangleTree Tree;
-  double Tolerance;
 };
 
 /// The smallest closed shell around each closed one, -1 if there is none.
@@ -242,7 +106,7 @@ std::vector<Index> FindParents(const Points& points, const Triangles& faces, con
     {
       continue;
     }
-    const Vector3 place = Corner(points, faces, t, 0);
+    const Vector3 place = CornerPlace(points, faces, t, 0);
     bool touches = false;
     Index parent = -1;
     for (const auto& [other, sum] : windings.At(place))
@@ -280,7 +144,7 @@ struct ClosedBodies
         this->OfVertex[static_cast<std::size_t>(faces(t, a))] = body;
         if (found.Table[static_cast<std::size_t>(body)].IsClosed)
         {
-          this->Bounds[static_cast<std::size_t>(body)].extend(Corner(points, faces, t, a));
+          this->Bounds[static_cast<std::size_t>(body)].extend(CornerPlace(points, faces, t, a));
         }
       }
       body = body >= 0 && found.Table[static_cast<std::size_t>(body)].IsClosed ? body : -1;
@@ -335,8 +199,8 @@ void FindOverlaps(
     const Index own = closed.OfTriangle[static_cast<std::size_t>(t)];
     for (int a = 0; a < 3 && own >= 0; ++a)
     {
-      const Vector3 from = Corner(points, faces, t, a);
-      const Vector3 to = Corner(points, faces, t, (a + 1) % 3);
+      const Vector3 from = CornerPlace(points, faces, t, a);
+      const Vector3 to = CornerPlace(points, faces, t, (a + 1) % 3);
       if (faces(t, a) < faces(t, (a + 1) % 3) &&
         closed.IsNearOther(Box(from.cwiseMin(to), from.cwiseMax(to)), own))
       {

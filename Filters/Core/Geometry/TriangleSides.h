@@ -56,7 +56,7 @@ struct EdgeDefects
 
 EdgeDefects FindEdgeDefects(const Triangles& triangles, Index numberOfVertices);
 
-/// Per triangle, the first with the same corners, in whatever order.
+/// For each triangle, the first triangle that has the same three corners in any order.
 std::vector<Index> FindFirsts(const Triangles& triangles);
 
 } // namespace SurfaceDiffusion

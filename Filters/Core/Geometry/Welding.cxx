@@ -3,8 +3,8 @@
 #include "Core/Geometry/Welding.h"
 
 #include "Core/Foundation/DisjointSets.h"
+#include "Core/Geometry/OpenEdges.h"
 #include "Core/Geometry/TriangleOrientation.h"
-#include "Core/Geometry/TriangleSides.h"
 #include "Core/Geometry/TriangleTree.h"
 #include "Core/Surface/MergePoints.h"
 
@@ -12,7 +12,6 @@
 #include <array>
 #include <cstddef>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -22,41 +21,6 @@ namespace
 {
 
 using Row3 = Eigen::RowVector3d;
-
-constexpr double Rounding = 1e-5; ///< of the diagonal
-constexpr double RoundingOfEdges = 0.01; ///< of the median edge
-
-/// Of distinct triangles.
-TriangleSides OpenSides(const Triangles& triangles)
-{
-  const std::vector<Index> firsts = FindFirsts(triangles);
-  TriangleSides open;
-  TriangleSides sides = SortSides(triangles);
-  sides.erase(std::remove_if(sides.begin(), sides.end(),
-                [&](const TriangleSide& side) { return firsts[side.Triangle] != side.Triangle; }),
-    sides.end());
-  ForEachEdge(sides,
-    [&](auto first, auto last)
-    {
-      if (last - first == 1)
-      {
-        open.push_back(*first);
-      }
-    });
-  return open;
-}
-
-std::vector<Index> EndsOf(const TriangleSides& sides)
-{
-  std::vector<Index> ends;
-  for (const TriangleSide& side : sides)
-  {
-    ends.insert(ends.end(), { side.Low, side.High });
-  }
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  return ends;
-}
 
 /// Triangles whose rows belong to those of the input.
 struct Facets
@@ -320,61 +284,6 @@ private:
 };
 
 } // namespace
-
-double DefaultWeldTolerance(const Points& points, const Triangles& triangles)
-{
-  TriangleSides sides = OpenSides(triangles);
-  if (sides.empty())
-  {
-    sides = SortSides(triangles);
-  }
-  if (sides.empty())
-  {
-    return 0.0;
-  }
-  std::vector<double> lengths;
-  lengths.reserve(sides.size());
-  for (const TriangleSide& side : sides)
-  {
-    lengths.push_back((points.row(side.Low) - points.row(side.High)).norm());
-  }
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  const double diagonal = (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
-  return std::min(Rounding * diagonal, RoundingOfEdges * *middle);
-}
-
-std::vector<Index> JoinOpenEdges(const Points& points, const Triangles& triangles, double tolerance)
-{
-  std::vector<Index> pointOf(static_cast<std::size_t>(points.rows()));
-  std::iota(pointOf.begin(), pointOf.end(), 0);
-  const std::vector<Index> ends = EndsOf(OpenSides(triangles));
-  Points places(static_cast<Eigen::Index>(ends.size()), 3);
-  for (std::size_t k = 0; k < ends.size(); ++k)
-  {
-    places.row(static_cast<Eigen::Index>(k)) = points.row(ends[k]);
-  }
-  const std::vector<Index> merged = MergePoints(places, tolerance);
-  for (std::size_t k = 0; k < ends.size(); ++k)
-  {
-    pointOf[ends[k]] = ends[merged[k]];
-  }
-  std::vector<char> isNeeded(pointOf.size(), 0);
-  for (Index t = 0; t < static_cast<Index>(triangles.rows()); ++t)
-  {
-    for (int a = 0; a < 3; ++a)
-    {
-      const Index i = triangles(t, a);
-      const Index j = triangles(t, (a + 1) % 3);
-      isNeeded[pointOf[i]] |= static_cast<char>(i != j && pointOf[i] == pointOf[j]);
-    }
-  }
-  for (std::size_t i = 0; i < pointOf.size(); ++i)
-  {
-    pointOf[i] = isNeeded[pointOf[i]] ? static_cast<Index>(i) : pointOf[i];
-  }
-  return pointOf;
-}
 
 WeldedSurface WeldSurface(const Points& points, const Triangles& triangles, double tolerance)
 {
