@@ -337,7 +337,8 @@ public:
    * shrinkage-thresholding algorithm (MFISTA; A. Beck, M. Teboulle, IEEE Trans. Image Process. 18,
    * 2009). It stops when an iteration changes u by StopTolerance R, which is no bound of the error.
    * BlurFWHM needs Mode SteadyState, FidelityNorm L2 and Discretization Linear.
-   * See AutomaticFidelity and AutomaticBlurFidelity. A warning reports a width outside 2 to 8 mean edge lengths.
+   * See AutomaticFidelity and AutomaticBlurFidelity. A warning reports a width outside 2 to 8 mean
+   * edge lengths.
    * A camera blurs in its image, not on the surface: its point spread function differs from H where
    * the surface is oblique.
    */

@@ -19,7 +19,8 @@
  *
  * Times in ms on coordinates in mm give velocities in mm/ms = m/s. Where T does not change, the
  * velocity is not defined and is 0. Where fronts meet or begin (`Collision`, `Focus`: the direction turns
- * within an edge), `Speed` is NaN and the velocity 0. `Speed` has the name of the data before it, or ResultArrayName.
+ * within an edge), `Speed` is NaN and the velocity 0. `Speed` has the name of the data before it, or
+ * ResultArrayName.
  *
  * With the linear basis functions phi_i of the points, the areas a_t of the triangles and A_i of
  * the control cells, and the outward conormals nu of the boundary,

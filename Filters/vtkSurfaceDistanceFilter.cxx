@@ -68,7 +68,7 @@ int vtkSurfaceDistanceFilter::RequestData(
   paths->Initialize();
   this->Paths = nullptr;
   const int result = this->Superclass::RequestData(request, inputs, outputs);
-  if (this->Paths && result != 0 && this->GetErrorCode() == 0)
+  if (this->Paths && result != 0)
   {
     paths->ShallowCopy(this->Paths);
   }

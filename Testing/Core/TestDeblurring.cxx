@@ -270,7 +270,7 @@ TEST(TikhonovDeblurring, ColumnsAreAsIfAloneAndMissingValuesAreNotRead)
   }
 }
 
-/// The space of the data serves all weights, and is made anew for other data.
+/// One Krylov space of the data serves the models of all weights; other data need a space of their own.
 TEST(TikhonovDeblurring, AFunctionOfTheOperatorIsWhatConjugateGradientsFindInFewSolves)
 {
   const BlurredSphere s(4);

@@ -45,7 +45,8 @@ def define_filters(module: str) -> dict[str, Any]:
         properties = _properties(proxy, bases)
         base = CLASSES.get(name, usual)
         made = type(old, (base,), {
-            "__module__": module, "OUTPUTS": base.OUTPUTS[:len(proxy.findall("OutputPort"))], **_constants(proxy, properties), **_methods(properties)})
+            "__module__": module, "OUTPUTS": base.OUTPUTS[:len(proxy.findall("OutputPort"))],
+            **_constants(proxy, properties), **_methods(properties)})
         made._pvsm_proxy_xml = xml  # type: ignore[attr-defined]
         objects[old] = made
         objects[f"_{name}ByClass"] = _Definition(_by_class(name, xml))
