@@ -207,7 +207,7 @@ protected:
   {
     const bool isLong = std::getenv("SURFACEDIFFUSION_LONG") != nullptr;
     int runs = 0, ends = 0;
-    for (long place = 1; place <= all; place += isLong ? 1 + place / 100 : 1 + all / 25, ++runs)
+    for (long place = 1; place <= all; place += isLong ? 1 + place / 100 : 1 + all / 12, ++runs)
     {
       SurfaceDiffusion::Run run(loops);
       endAt(place);

@@ -737,7 +737,7 @@ TEST(SurfaceDenoising, LargeFansEndAndReportProgress)
 /// Of processor time: on one thread, under other load.
 TEST(SurfaceDenoising, AbortEndsTheWorkOnALargeFanSoon)
 {
-  const Surface fan = Fan(10000);
+  const Surface fan = Fan(4000);
   const TriangleMesh mesh(fan.Vertices, fan.Faces);
   DenoisingSettings settings;
   settings.NoiseLevel = 0.01;

@@ -138,8 +138,9 @@ def check_first_apply():
     Hide(data, view)
     assert has_number(source), name
     check_picture("Client" + name)
-    source.UpdatePropertyInformation()
-    check_slip(view, "Client" + name, SLIPS[name](source), number=True)
+    if "SURFACEDIFFUSION_PYTHON_PLUGIN" not in os.environ:  # its pictures and numbers are the same
+        source.UpdatePropertyInformation()
+        check_slip(view, "Client" + name, SLIPS[name](source), number=True)
     hide(source)
     SetActiveView(view)
     Show(data, view)

@@ -81,7 +81,7 @@ protected:
 
 TEST_P(EveryFilter, WorksAgainAfterAnAbortAtAnyReport)
 {
-  for (int stop = 1;; stop += 1 + stop / 5) // first every report, then some
+  for (int stop = 1;; stop += 1 + stop / 3) // first every report, then some
   {
     auto filter = this->GetParam().Make();
     filter->SetInputData(this->Surface);
@@ -114,7 +114,7 @@ TEST_P(EveryFilter, WorksAgainAfterAnAbortAtAnyReport)
 TEST_P(EveryFilter, WorksAgainAfterWantOfMemoryAtAnyPlace)
 {
 #ifdef SURFACEDIFFUSION_FAIL_ALLOCATIONS
-  for (long place = 1;; place += 1 + place / 5) // first every allocation, then some
+  for (long place = 1;; place += 1 + place / 3) // first every allocation, then some
   {
     auto filter = this->GetParam().Make();
     filter->SetInputData(this->Surface);

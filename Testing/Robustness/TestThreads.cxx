@@ -316,7 +316,7 @@ TEST(Threads, OfNegativeNumberAreAnError)
 
 TEST_P(AnyThreads, MayRunTwoFiltersAtOnce)
 {
-  const vtkSmartPointer<vtkPolyData> surface = Sphere(this->GetParam().Levels(IsSanitized ? 5 : 6));
+  const vtkSmartPointer<vtkPolyData> surface = Sphere(this->GetParam().Levels(5));
   AddRough(surface);
   AddArraysOfAllFilters(surface);
   const vtkSmartPointer<vtkDataArray> alone = this->Run(surface);
