@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "Core/Foundation/SymmetricModes.h"
 #include "Core/Foundation/Types.h"
-
-#include <Eigen/Eigenvalues>
 
 namespace SurfaceDiffusion
 {
@@ -27,9 +26,8 @@ template <typename Row>
 Eigen::RowVectorXd MainAxis(const Row& tensor, Eigen::Index m)
 {
   const Eigen::RowVectorXd copy = tensor;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(
-    Eigen::Map<const Eigen::MatrixXd>(copy.data(), m, m));
-  return axes.eigenvectors().col(m - 1).transpose();
+  const SymmetricModes axes(Eigen::Map<const Eigen::MatrixXd>(copy.data(), m, m));
+  return axes.Vectors.col(m - 1).transpose();
 }
 
 } // namespace SurfaceDiffusion

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Foundation/SymmetricModes.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Solvers/Eigenmodes.h"
 #include "Hubs.h"
 #include "Meshes.h"
 #include "ThreadedFor.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -108,8 +108,7 @@ TEST(Eigenmodes, AreThoseOfTheDenseProblem)
     const Vector roots = mesh.ControlAreas().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd dense =
       roots.asDiagonal() * Eigen::MatrixXd(stiffness) * roots.asDiagonal();
-    const Vector expected =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense, Eigen::EigenvaluesOnly).eigenvalues();
+    const Vector expected = SymmetricEigenvalues(dense);
     constexpr Index count = 40;
     const Eigenmodes found = FindEigenmodes(*assembler, CotanWeights(mesh), count);
     ASSERT_GT(mesh.NumberOfVertices(), 400) << "solved by iteration";

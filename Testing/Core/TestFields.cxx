@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Foundation/SymmetricModes.h"
 #include "Core/Models/Fields/CellScaleFilter.h"
 #include "Core/Models/Fields/FunctionDiagonal.h"
 #include "Core/Models/Fields/RandomField.h"
@@ -9,7 +10,6 @@
 #include "Meshes.h"
 #include "ThreadedFor.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -33,10 +33,9 @@ Eigen::MatrixXd DenseFunction(
   SparseMatrix stiffness = ZeroMatrix(assembler.Pattern());
   assembler.Fill(stiffness, Vector::Zero(mesh.NumberOfVertices()), 1.0, CotanWeights(mesh));
   const Vector roots = mesh.ControlAreas().cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense(
-    roots.asDiagonal() * Eigen::MatrixXd(stiffness) * roots.asDiagonal());
-  const Vector values = dense.eigenvalues().cwiseMax(0.0).unaryExpr(f);
-  const Eigen::MatrixXd vectors = roots.asDiagonal() * dense.eigenvectors();
+  const SymmetricModes dense(roots.asDiagonal() * Eigen::MatrixXd(stiffness) * roots.asDiagonal());
+  const Vector values = dense.Eigenvalues.cwiseMax(0.0).unaryExpr(f);
+  const Eigen::MatrixXd vectors = roots.asDiagonal() * dense.Vectors;
   Eigen::MatrixXd result = vectors * values.asDiagonal() * vectors.transpose();
   if (timesMass)
   {

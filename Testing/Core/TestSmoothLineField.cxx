@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Core/Foundation/SymmetricModes.h"
 #include "Core/Geometry/SmoothLineField.h"
 #include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -106,15 +106,16 @@ TEST(SmoothLineField, IsTheEigenvectorOnEveryTriangle)
   {
     const Field field = Smoothest(s, { 1.0, 1.0, 1.0 });
     const LineFieldOperator lines(field.Mesh);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(
-      Eigen::MatrixXd(lines.Stiffness()), Eigen::MatrixXd(lines.Mass().asDiagonal()));
+    const Vector roots = lines.Mass().cwiseSqrt().cwiseInverse(); // the mass matrix is diagonal
+    const SymmetricModes modes(
+      roots.asDiagonal() * Eigen::MatrixXd(lines.Stiffness()) * roots.asDiagonal());
     // Two modes: all lines may be turned by the same angle.
-    ASSERT_GT(modes.eigenvalues()[2], 1.05 * modes.eigenvalues()[1]);
+    ASSERT_GT(modes.Eigenvalues[2], 1.05 * modes.Eigenvalues[1]);
     const Points along = Eigen::RowVector3d(1.0, 1.0, 1.0).replicate(s.NumberOfTriangles(), 1);
     Vector load, diagonal;
     lines.Project(TangentVectorsFromTriangleVectors(*field.Mesh, s.Vertices, s.Faces, along),
       Vector::Ones(s.NumberOfTriangles()), load, diagonal);
-    const Eigen::MatrixXd lowest = modes.eigenvectors().leftCols(2);
+    const Eigen::MatrixXd lowest = roots.asDiagonal() * modes.Vectors.leftCols(2);
     const Points exact = VectorsInSpace(
       *field.Mesh, s.Vertices, s.Faces, lines.Lines(Vector(lowest * (lowest.transpose() * load))));
     for (Index t = 0; t < s.NumberOfTriangles(); ++t)

@@ -3,8 +3,7 @@
 #include "Core/Geometry/SmoothLineField.h"
 
 #include "Core/Foundation/Random.h"
-
-#include <Eigen/Eigenvalues>
+#include "Core/Foundation/SymmetricModes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -158,21 +157,19 @@ private:
     // The eigenvalues of equally smooth fields of a sphere differ by 0.1 % on a coarse mesh.
     constexpr double nearly = 0.005;
     const auto size = static_cast<Eigen::Index>(component.Diagonal.size());
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes;
     // Eigen takes entries that are far below 1 for zeros.
     const double unit = component.Diagonal.front() > 0.0 ? component.Diagonal.front() : 1.0;
-    modes.computeFromTridiagonal(Eigen::Map<const Vector>(component.Diagonal.data(), size) / unit,
+    const SymmetricModes modes(Eigen::Map<const Vector>(component.Diagonal.data(), size) / unit,
       Eigen::Map<const Vector>(component.OffDiagonal.data(), size - 1) / unit);
-    const double largest = modes.eigenvalues()[size - 1]; // of A^-1
+    const double largest = modes.Eigenvalues[size - 1]; // of A^-1
     Vector shares = Vector::Zero(size);
     for (Eigen::Index k = 0; k < size; ++k)
     {
-      const double value = modes.eigenvalues()[k];
+      const double value = modes.Eigenvalues[k];
       if (value > 0.0)
       {
         const double distance = (largest / value - 1.0) / nearly;
-        shares += std::exp(-0.5 * distance * distance) * modes.eigenvectors()(0, k) *
-          modes.eigenvectors().col(k);
+        shares += std::exp(-0.5 * distance * distance) * modes.Vectors(0, k) * modes.Vectors.col(k);
       }
     }
     Vector difference = shares;

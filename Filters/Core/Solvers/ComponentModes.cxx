@@ -3,12 +3,11 @@
 #include "Core/Solvers/ComponentModes.h"
 
 #include "Core/Foundation/Random.h"
+#include "Core/Foundation/SymmetricModes.h"
 #include "Core/Solvers/KrylovBasis.h"
 #include "Core/Solvers/NestedDissection.h"
 #include "Core/Solvers/NotPositiveDefinite.h"
 #include "Core/Solvers/SupernodalFactor.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -62,12 +61,12 @@ public:
     Values modes;
     if (this->Size() <= std::max(FewRows, 3 * count))
     {
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense{ Eigen::MatrixXd(this->S) };
-      if (dense.info() != Eigen::Success)
+      const SymmetricModes dense{ Eigen::MatrixXd(this->S) };
+      if (!dense.Converged)
       {
         throw std::runtime_error("the eigenvalues of the surface did not converge");
       }
-      modes = dense.eigenvectors().leftCols(count);
+      modes = dense.Vectors.leftCols(count);
       modes.col(0) = this->Z;
     }
     else
@@ -107,10 +106,9 @@ private:
       {
         continue;
       }
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small(
-        this->T.topLeftCorner(columns, columns));
-      const Eigen::MatrixXd vectors = small.eigenvectors().rightCols(wanted).rowwise().reverse();
-      const Vector values = small.eigenvalues().tail(wanted).reverse();
+      const SymmetricModes small(this->T.topLeftCorner(columns, columns));
+      const Eigen::MatrixXd vectors = small.Vectors.rightCols(wanted).rowwise().reverse();
+      const Vector values = small.Eigenvalues.tail(wanted).reverse();
       const Vector errors = (coupling * vectors.bottomRows(Block)).colwise().norm().transpose();
       if ((errors.array() <= Tolerance * values.array()).all())
       {

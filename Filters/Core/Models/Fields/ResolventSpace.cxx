@@ -3,8 +3,7 @@
 #include "Core/Models/Fields/ResolventSpace.h"
 
 #include "Core/Foundation/ColumnSums.h"
-
-#include <Eigen/Eigenvalues>
+#include "Core/Foundation/SymmetricModes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,19 +101,18 @@ Vector ResolventSpace::Coefficients(
   const auto end = std::find(column.Below.begin(), column.Below.end(), 0.0);
   const auto ended = static_cast<std::size_t>(end - column.Below.begin()) + 1;
   const auto m = static_cast<Eigen::Index>(std::min(size, ended));
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-  ritz.computeFromTridiagonal(Eigen::Map<const Vector>(column.Diagonal.data(), m),
+  const SymmetricModes ritz(Eigen::Map<const Vector>(column.Diagonal.data(), m),
     Eigen::Map<const Vector>(column.Below.data(), m - 1));
   Vector values(m);
   for (Eigen::Index j = 0; j < m; ++j)
   {
     constexpr double least =
       1e-12; // no resolvent of a mesh has smaller eigenvalues but by round-off
-    const double y = std::clamp(ritz.eigenvalues()[j], least, 1.0);
-    values[j] = f((1.0 / y - 1.0) / this->Step) * ritz.eigenvectors()(0, j);
+    const double y = std::clamp(ritz.Eigenvalues[j], least, 1.0);
+    values[j] = f((1.0 / y - 1.0) / this->Step) * ritz.Vectors(0, j);
   }
   Vector all = Vector::Zero(static_cast<Eigen::Index>(size));
-  all.head(m) = ritz.eigenvectors() * values;
+  all.head(m) = ritz.Vectors * values;
   return all;
 }
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Harmonic/UnitVectors.h"
 
+#include "Core/Foundation/SymmetricModes.h"
 #include "Core/Surface/AllComponents.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <limits>
@@ -55,11 +55,10 @@ Eigen::RowVectorXd PrevailingDirection(
   Eigen::RowVectorXd sum = sums.segment(1, m);
   if (lineField && area > 0.0)
   {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(
-      Eigen::Map<const Eigen::MatrixXd>(sums.data() + 1 + m, m, m));
+    const SymmetricModes axes(Eigen::Map<const Eigen::MatrixXd>(sums.data() + 1 + m, m, m));
     const bool decided =
-      axes.eigenvalues()[m - 1] - axes.eigenvalues()[m - 2] > MinimumMeanLength * area;
-    sum = decided ? Eigen::RowVectorXd(axes.eigenvectors().col(m - 1).transpose())
+      axes.Eigenvalues[m - 1] - axes.Eigenvalues[m - 2] > MinimumMeanLength * area;
+    sum = decided ? Eigen::RowVectorXd(axes.Vectors.col(m - 1).transpose())
                   : Eigen::RowVectorXd(Eigen::RowVectorXd::Zero(m));
   }
   else if (!(sum.norm() > MinimumMeanLength * area))

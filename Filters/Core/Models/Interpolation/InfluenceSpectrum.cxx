@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/InfluenceSpectrum.h"
 
-#include <Eigen/Eigenvalues>
+#include "Core/Foundation/SymmetricModes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,11 +120,10 @@ void InfluenceSpectrum::Decompose(
     unit.middleRows(first, columns).setIdentity();
     influence.middleCols(first, columns) = ApplyInfluence(fit, roots, unit);
   }
-  const Eigen::MatrixXd symmetric = 0.5 * (influence + influence.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
-  this->Largest = solver.eigenvalues().maxCoeff();
-  this->Shares = solver.eigenvalues().cwiseMax(0.0).cwiseMin(1.0);
-  this->Vectors = solver.eigenvectors();
+  const SymmetricModes modes(0.5 * (influence + influence.transpose()));
+  this->Largest = modes.Eigenvalues.maxCoeff();
+  this->Shares = modes.Eigenvalues.cwiseMax(0.0).cwiseMin(1.0);
+  this->Vectors = modes.Vectors;
   for (Index i = 0; i < this->Count; ++i)
   {
     this->Trace.emplace_back(this->Shares[i], 1.0);
@@ -189,14 +188,13 @@ std::vector<InfluenceSpectrum::Measure> InfluenceSpectrum::MeasuresOf(
     const auto size = static_cast<Eigen::Index>(diagonal[c].size());
     const Vector main = Eigen::Map<const Vector>(diagonal[c].data(), size);
     const Vector next = Eigen::Map<const Vector>(beside[c].data(), size - 1);
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-    solver.computeFromTridiagonal(main, next);
+    const SymmetricModes modes(main, next);
     Measure measure;
     for (Eigen::Index j = 0; j < size; ++j)
     {
-      this->Largest = std::max(this->Largest, solver.eigenvalues()[j]);
-      const double share = std::min(1.0, std::max(0.0, solver.eigenvalues()[j]));
-      const double first = solver.eigenvectors()(0, j);
+      this->Largest = std::max(this->Largest, modes.Eigenvalues[j]);
+      const double share = std::min(1.0, std::max(0.0, modes.Eigenvalues[j]));
+      const double first = modes.Vectors(0, j);
       measure.emplace_back(share, squares[c] * first * first);
     }
     measures.push_back(std::move(measure));

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Interpolation/SmoothingPosterior.h"
 
+#include "Core/Foundation/SymmetricModes.h"
 #include "Core/Statistics/StudentFactor.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -129,10 +128,10 @@ Vector SmoothingPosterior::SquareOfError(const SmoothFit& fit, double mu,
   }
   // They are along few directions.
   constexpr double resolved = 1e-8;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(steps.transpose() * steps);
-  const Vector lengths = solver.eigenvalues();
+  const SymmetricModes modes(steps.transpose() * steps);
+  const Vector& lengths = modes.Eigenvalues;
   const Eigen::Index few = (lengths.array() > resolved * lengths[number - 1]).count();
-  steps = (steps * solver.eigenvectors().rightCols(few)).eval();
+  steps = (steps * modes.Vectors.rightCols(few)).eval();
   std::vector<InverseEntry> edges = slopes.Edges();
   const Vector diagonal = fit.InverseDiagonal(progress.Part(0.0, 0.3), &edges);
   Vector squares = ofDiagonal * diagonal.cwiseMax(0.0);
