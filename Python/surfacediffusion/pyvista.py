@@ -62,7 +62,6 @@ from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from . import _core, _functions
 from ._distance import nearest_sources as _nearest_sources
 from ._fields import random_field as _random_field
-from ._fields import surrogates as _surrogates
 from ._models import ARRAYS, Output, as_mask, find_outputs, make_result, take_data
 from ._paths import geodesic_disk as _geodesic_disk
 from ._paths import geodesic_path as _geodesic_path
@@ -81,6 +80,7 @@ from ._scales import scale_filter as _scale_filter
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
 from ._surface import Surface, place
+from ._surrogates import surrogates as _surrogates
 
 __all__: list[str] = []
 __all__ += [*_functions.__all__, "distance", "geodesic_disk", "geodesic_path", "path_through", "random_field",
@@ -365,7 +365,7 @@ def geodesic_disk(
 
 
 def random_field(
-    mesh: Any, n: int = 1, *, fwhm: float | None = None, range: float | None = None, nu: int = 1,
+    mesh: Any, n: int = 1, *, fwhm: float | None = None, range: float | None = None, nu: float = 1,
     seed: int = 0, normalize: bool = True, mask: str | None = None, roi: str | None = None,
     progress: Progress = False, result_array_name: str | None = None, **merging: Any,
 ) -> Any:
