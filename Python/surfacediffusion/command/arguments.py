@@ -11,6 +11,7 @@ from . import (
     denoising, distances, doctor, edges, fields, filling, info, parts, resampling, scales, shape,
     smoothing)
 from .common import PROGRAM, SIDES, Command, Commands, Parser
+from ..files.cifti import structure_of_word
 from .inputs import ArgumentProblem
 
 __all__ = ["make_parser", "parse"]
@@ -71,10 +72,23 @@ def parse(argv):
         len(argv) > 1 and re.search(r"\.d[a-z]+\.nii$", argv[1]) is not None)
     parser = make_parser(hemispheres)
     complete(parser)
+    argv = _join_structures(argv)
     arguments = parser.parse_args(argv)
     if getattr(arguments, "cortex", False):
         arguments.roi = _cortex_label(parser, arguments)
     return arguments
+
+
+def _join_structures(argv):
+    """The words --areas STRUCTURE FILE as one argument of the option; STRUCTURE is in capitals, as CORTEX_LEFT."""
+    joined = []
+    for word in argv:
+        if len(joined) > 1 and joined[-2] in ("--areas", "-corrected-areas") and re.fullmatch(
+                "[A-Z]+(_[A-Z]+)*", joined[-1]):
+            joined[-1] = f"{structure_of_word(joined[-1])}\0{word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def make_parser(hemispheres=False):

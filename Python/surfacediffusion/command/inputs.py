@@ -12,6 +12,7 @@ import numpy as np
 
 from .._surface import Surface
 from ..files import Data, FileError, Part, SurfaceFile, read_data, read_surface
+from ..files.cifti import structure_of_word, word_of_structure
 from ..files.content import read_content
 from ..files.data import NO_VERTICES
 from ..files.surface import structure_of_name
@@ -76,8 +77,10 @@ def check_files(arguments):
             raise ArgumentProblem(f"{path} is {seen[same]} and {word}; allowed: different files")
         seen[same] = word
         for name in _INPUTS:
-            other = getattr(arguments, name, None)
-            if not isinstance(other, str) or os.path.realpath(split_label(other)[0]) != same:
+            others = getattr(arguments, name, None)
+            others = others if isinstance(others, list) else [others]
+            if not any(isinstance(other, str) and os.path.realpath(split_label(other.split("\0")[-1])[0]) == same
+                       for other in others):
                 continue
             is_mesh = path.lower().endswith(_MESHES) or arguments.command == "denoise-mesh" or getattr(
                 arguments, "move", False)
@@ -135,6 +138,11 @@ def _read_surfaces(arguments):
                 raise FileError(f"{path}: a surface of {surface.structure}; allowed for --{side}: "
                                 f"{structure}")
             surfaces[structure] = surface
+    for word, path in arguments.structures:
+        structure = structure_of_word(word)
+        if structure in surfaces:
+            raise ArgumentProblem(f"--surface {word} and another surface of {structure}; allowed: one of them")
+        surfaces[structure] = lengths_of(read_surface(path))
     return surfaces
 
 
@@ -311,13 +319,37 @@ def _labels_text(data):
     return ", ".join(shown[:40]) + (", ..." if len(shown) > 40 else "")
 
 
-def read_areas(path, surfaces):
-    """{id of the surface: areas of its vertices} from the first column; empty without a file."""
-    if path is None:
-        return {}
-    data, found = read_data(path), {}
+def read_areas(paths, surfaces):
+    """{id of the surface: areas of its vertices} from the first columns; empty without a file. paths: with the
+    structure before a NUL, if it is given."""
+    found = {}
+    for word in paths:
+        structure, _, path = word.rpartition("\0")
+        for number, areas in _read_areas(path, structure, surfaces):
+            if number in found:
+                raise ArgumentProblem(f"--areas {path}: areas of a surface that has some; allowed: one file for each")
+            found[number] = areas
+    missing = [structure for structure, surface in surfaces.items() if found and id(surface) not in found]
+    if missing:
+        raise ArgumentProblem("--areas for some surfaces; allowed: for none or all: add " + " ".join(
+            f"--areas {word_of_structure(structure)} FILE" for structure in missing))
+    return found
+
+
+def _read_areas(path, structure, surfaces):
+    data = read_data(path)
+    if structure and len(data.parts) == 1:
+        data.parts[0].structure = structure
     for part in data.parts:
-        surface = surface_for(part, surfaces, data)
+        if "" in surfaces:
+            surface = surface_for(part, surfaces, data)
+        elif part.structure in surfaces:
+            surface = surfaces[part.structure]
+        elif data.kind == "cifti":
+            continue
+        else:
+            raise FileError(f"{data.path}: areas of {part.structure or 'no structure'}; allowed: of "
+                            f"{', '.join(surfaces)}, by --areas STRUCTURE FILE")
         areas, absent = on_surface(part, part.values[:, :1].astype(float), surface, data)
         areas = np.where(absent, vertex_areas(surface), areas[:, 0])
         wrong = ~(np.isfinite(areas) & (areas > 0))
@@ -325,8 +357,7 @@ def read_areas(path, surfaces):
             vertex = int(np.argmax(wrong))
             raise FileError(f"{data.path}: the area of vertex {vertex} is {areas[vertex]:g}; allowed: "
                             "finite numbers above 0")
-        found[id(surface)] = areas
-    return found
+        yield id(surface), areas
 
 
 def read_areas_or_surface(path, sphere: SurfaceFile):
@@ -340,7 +371,7 @@ def read_areas_or_surface(path, sphere: SurfaceFile):
     except FileError as error:
         if "no surface" not in str(error):
             raise
-        return read_areas(content, {"": sphere})[id(sphere)]
+        return dict(_read_areas(content, "", {"": sphere}))[id(sphere)]
     if len(surface.points) != len(sphere.points):
         raise FileError(f"{path}: {len(surface.points)} points, but {sphere.path} has {len(sphere.points)}; "
                         "allowed: the surface of the same vertices, or their areas")
@@ -372,12 +403,10 @@ def surface_for(part, surfaces, data):
         if data.kind != "cifti":
             raise ArgumentProblem(f"--left and --right are for CIFTI files; {data.path} is of one surface; "
                                   "allowed: a CIFTI file, or all files of one SURFACE")
-        if part.structure not in SIDES.values():
-            raise FileError(f"{data.path}: data at vertices of {part.structure}; allowed: "
-                            + ", ".join(SIDES.values()))
+        missing = [other.structure for other in data.parts if other.structure not in surfaces]
         if part.structure not in surfaces:
-            side = part.structure.replace("Cortex", "").lower()
-            raise ArgumentProblem(f"--{side} is missing: {data.path} has data of {part.structure}")
+            raise ArgumentProblem(f"{data.path} has data of {' and '.join(missing)}; add "
+                                  + " ".join(map(_option_of, missing)))
         return surfaces[part.structure]
     surface = surfaces[""]
     if len(data.parts) > 1:
@@ -392,6 +421,12 @@ def surface_for(part, surfaces, data):
         warnings.warn(f"{data.path} is of {side} by its name, but {surface.path} is of {surface.structure}",
                       stacklevel=2)
     return surface
+
+
+def _option_of(structure):
+    """The option by which the surface of a structure is given."""
+    sides = [f"--{side} FILE" for side, name in SIDES.items() if name == structure]
+    return sides[0] if sides else f"--surface {word_of_structure(structure)} FILE"
 
 
 def on_surface(part, values, surface, data):
