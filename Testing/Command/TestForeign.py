@@ -409,7 +409,7 @@ class Sentences(ForeignTest):
         self.assertRegex(error, r"\Asurfacediffusion: b.off: .*\nsurfacediffusion: c.bin: .*\n\Z")
 
     def test_commands_of_workbench_are_answered_with_those_that_are_here(self):
-        for word, here in (("-metric-gradient", "derivatives"), ("-surface-geodesic-distance", "distance")):
+        for word, here in (("-cifti-gradient", "derivatives"), ("-metric-dilate", "inpaint, which fills by harmonic functions")):
             self.refused(f"^surfacediffusion: {word} is a command of Workbench .*; allowed: surfacediffusion "
                          f"{here}, or -metric-smoothing, -cifti-smoothing, -metric-resample", word, "a", "b", "c")
 

@@ -9,7 +9,7 @@ import re
 
 from . import (
     denoising, distances, doctor, edges, fields, filling, info, parts, resampling, scales, shape,
-    smoothing)
+    smoothing, workbench)
 from .common import PROGRAM, SIDES, Command, Commands, Parser
 from ..files.cifti import structure_of_word
 from .inputs import ArgumentProblem
@@ -43,19 +43,24 @@ COMMANDS = (
     fields.add_surrogates,
     resampling.add_resample,
     resampling.add_metric_resample,
+    workbench.add_metric_gradient,
+    workbench.add_metric_estimate_fwhm,
+    workbench.add_surface_curvature,
+    workbench.add_surface_geodesic_distance,
+    workbench.add_surface_vertex_areas,
     info.add_info,
     doctor.add_doctor,
 )
 
 
 #: The commands with Workbench's names and arguments
-SAME_WORDS = ("-metric-smoothing", "-cifti-smoothing", "-metric-resample")
+SAME_WORDS = ("-metric-smoothing", "-cifti-smoothing", "-metric-resample", "-metric-gradient", "-metric-estimate-fwhm",
+              "-surface-curvature", "-surface-geodesic-distance", "-surface-vertex-areas")
 
 #: What other commands of Workbench are here
 WORKBENCH = {
-    "-metric-gradient": "derivatives", "-cifti-gradient": "derivatives", "-metric-dilate": "inpaint",
-    "-cifti-dilate": "inpaint", "-metric-estimate-fwhm": "fwhm", "-cifti-estimate-fwhm": "fwhm",
-    "-surface-geodesic-distance": "distance", "-surface-curvature": "curvature",
+    "-cifti-gradient": "derivatives", "-metric-dilate": "inpaint, which fills by harmonic functions",
+    "-cifti-dilate": "inpaint, which fills by harmonic functions", "-cifti-estimate-fwhm": "fwhm",
     "-surface-information": "info", "-file-information": "info", "-label-resample": "resample",
 }
 
