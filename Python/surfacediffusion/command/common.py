@@ -185,6 +185,13 @@ def merging(arguments):
             "merge_tolerance": tolerance or 0.0}
 
 
+def coordinates(parser, which):
+    """Of which points the coordinates are given."""
+    parser.add_argument("--ras", choices=("tkr", "scanner"), default="tkr",
+                        help=f"the coordinates of {which}: tkr: those of SURFACE (default); scanner: larger by "
+                             "FreeSurfer's c_ras, which is in the file of SURFACE")
+
+
 # ---- numbers -------------------------------------------------------------------------------------
 
 def positive(parser, option, metavar, text, default=None):

@@ -146,6 +146,17 @@ def _read_surfaces(arguments):
     return surfaces
 
 
+def to_surface(arguments, surface, places, report):
+    """Points in the coordinates of the surface; they are given in those of --ras."""
+    if arguments.ras == "tkr":
+        return places
+    if not surface.center.any():
+        raise ArgumentProblem(f"--ras scanner with {surface.path}, which has no c_ras; allowed: surfaces of FreeSurfer, "
+                              "or of GIFTI with VolGeomC_R, VolGeomC_A and VolGeomC_S")
+    report.facts.update(ras="scanner", c_ras=[float(x) for x in surface.center])
+    return np.asarray(places, dtype=float) - surface.center
+
+
 def read_values(path, surface, tables=True):
     """The values of a file or its Content: places (p, 3) or None, values (p, k) or (n, k), NaN where the file
     has none, and the names of the columns. tables: whether places with values are allowed; otherwise they are
