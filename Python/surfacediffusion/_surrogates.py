@@ -103,8 +103,8 @@ def surrogates(
     In simulations with 100 x 100 independent maps on a sphere of 642 points (Gaussian of FWHM 0.6 of the radius,
     Matern's with range 0.8, a mixture of two widths with noise), tests at 5 % by 99 surrogates have found
     5.9, 5.7 and 6.3 % of the pairs to be related, and those with the true model 5.7, 5.8 and 5.8 %; with a third
-    of the points missing 6.2, 6.0 and 6.6 %, and 5.4, 5.4 and 6.0 %; of the first two over 100 parcels 4.4 and
-    5.0 %, and 5.1 and 5.1 %. Maps that
+    of the points missing 6.2, 6.0 and 6.6 %, and 5.4, 5.4 and 6.0 %; over 100 parcels
+    4.4, 5.0 and 5.0 %, and 5.1, 5.1 and 5.0 %. Maps that
     are as smooth as the surface is large have few independent parts, and no model can be found well: on a
     cap of a sphere whose root of the area is 2 radii, 9 to 10 % at FWHM 1 and 1.6 of the radius.
 

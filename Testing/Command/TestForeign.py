@@ -342,6 +342,11 @@ class FreeSurfer(ForeignTest):
             samples.write_surface(name)
             self.warned(expected.format(name, shape), "smooth", name, "lh.thickness", 5, "o.curv")
             self.warned(expected.format(name, shape), "distance", name, "o.curv", "--from", 0)
+        for name, shape in (("L.sphere.32k_fs_LR.surf.gii", "spherical"), ("sub-01_hemi-L_inflated.surf.gii", "inflated")):
+            image = nib.load(samples.write_surface(name))
+            image.darrays[0].meta.pop("GeometricType", None)
+            nib.save(image, name)
+            self.warned(expected.format(name, shape), "smooth", name, "lh.thickness", 5, "o.curv")
         for shape in ("Spherical", "Inflated", "Very_Inflated", "Flat"):
             image = nib.load(samples.write_surface("a.surf.gii"))
             image.darrays[0].meta["GeometricType"] = shape
