@@ -24,7 +24,7 @@ from surfacediffusion import (
     Surface, denoise_mesh, distance, geodesic_path, get_number_of_threads, heat, interpolate, intrinsic_tv,
     nearest_sources, path_through, set_number_of_threads,
 )
-from surfacediffusion.command.inputs import vertex_areas
+from surfacediffusion.command.areas import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
 INSIDE = POINTS[:, 2] > -6

@@ -11,6 +11,7 @@ from .. import distance, estimate_fwhm, gradient, heat
 from ..files import new_data, read_surface
 from ..files.content import check_output_folder
 from . import common, inputs, values
+from .areas import read_areas, vertex_areas
 from .report import counted, number, number_text
 from .smoothing import SIGMA_TO_FWHM
 from .stages import read, read_surface_for_output, write_new
@@ -138,11 +139,11 @@ def surface_geodesic_distance(arguments, report):
     surface = read_surface_for_output(arguments, report, lengths=True)
     if not 0 <= arguments.vertex < len(surface.points):
         raise inputs.ArgumentProblem(f"VERTEX is {arguments.vertex}; allowed: 0 to {len(surface.points) - 1}")
-    areas = inputs.read_areas(arguments.areas, {"": surface}).get(id(surface))
+    areas = read_areas(arguments.areas, {"": surface}).get(id(surface))
     target = new_data(surface, arguments.output, [f"distance from {arguments.vertex}"])
     speed = None
     if areas is not None:  # lengths grow with the root of the area
-        speed = np.sqrt(inputs.vertex_areas(surface) / areas)
+        speed = np.sqrt(vertex_areas(surface) / areas)
     with report.working("Distance") as progress:
         found = distance(surface.solver, [arguments.vertex], speed=speed, progress=progress,
                          maximum_distance=arguments.limit or 0.0)
@@ -163,4 +164,4 @@ def add_surface_vertex_areas(commands):
 def surface_vertex_areas(arguments, report):
     surface = read_surface_for_output(arguments, report, lengths=True)
     target = new_data(surface, arguments.output, ["vertex areas"])
-    write_new(arguments, report, target, inputs.vertex_areas(surface)[:, None])
+    write_new(arguments, report, target, vertex_areas(surface)[:, None])
