@@ -419,7 +419,7 @@ class Meshes(unittest.TestCase):
             np.testing.assert_allclose(raised.points, expected.surface.points, atol=1e-5)
             self.assertGreater(raised.volume, ball.volume)
             np.testing.assert_array_equal(raised["c"], ball["c"])
-        with self.assertRaisesRegex(ValueError, "array is 'none'; allowed: point or cell arrays"):
+        with self.assertRaisesRegex(ValueError, "array is 'none'; allowed: point arrays"):
             relief(ball, "none", 1.0)
 
     def test_blocks_are_segmented_one_by_one(self):
