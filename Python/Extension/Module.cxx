@@ -178,9 +178,10 @@ NB_MODULE(_core, m)
       "surface"_a, "mask"_a.none(), "mask_on_faces"_a, "merges"_a, "tolerance"_a,
       "progress"_a.none())
     .def("prepare", &SurfaceFields::Prepare, "width"_a, "nu"_a, "unit_variance"_a,
-      "progress"_a.none(), "shares"_a = false)
+      "progress"_a.none(), "shares"_a = false, "ranges"_a = nb::none())
     .def("end_sharing", &SurfaceFields::EndSharing)
     .def("draw", &SurfaceFields::Draw, "seed"_a, "first"_a, "fields"_a, "progress"_a.none())
+    .def("apply_transposed", &SurfaceFields::ApplyTransposed, "weights"_a, "progress"_a.none())
     .def("filter_scales", &SurfaceFields::FilterScales, "values"_a, "wavelengths"_a, "order"_a,
       "progress"_a.none())
     .def("filter_scales_of_faces", &SurfaceFields::FilterScalesOfFaces, "values"_a, "wavelengths"_a,

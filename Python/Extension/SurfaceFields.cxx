@@ -38,25 +38,33 @@ SurfaceFields::SurfaceFields(std::shared_ptr<const InputSurface> surface,
     });
 }
 
-void SurfaceFields::Prepare(
-  double width, int nu, bool unitVariance, const nb::object& progress, bool shares)
+void SurfaceFields::Prepare(double width, double nu, bool unitVariance, const nb::object& progress,
+  bool shares, const std::optional<FactorArray>& ranges)
 {
   const UseGuard guard(this->InUse);
-  const std::tuple<double, int, bool, bool> wanted{ width, nu, unitVariance, shares };
+  const std::vector<double> given = ranges
+    ? std::vector<double>(ranges->data(), ranges->data() + ranges->shape(0))
+    : std::vector<double>();
+  const std::tuple<double, double, bool, bool, std::vector<double>> wanted{ width, nu, unitVariance,
+    shares, given };
   if (this->Field && this->Prepared == wanted)
   {
     return;
   }
   const TriangleMesh& mesh = this->Built->Mesh();
   RandomField::Settings settings;
-  settings.Covariance = nu == 0 ? FieldCovariance::Gaussian : FieldCovariance::Matern;
+  settings.Covariance = nu == 0.0 ? FieldCovariance::Gaussian : FieldCovariance::Matern;
   settings.Width = width / mesh.LengthUnit();
   settings.Range = settings.Width;
+  if (ranges)
+  {
+    settings.Ranges = this->LengthsOfVertices(*ranges);
+  }
   settings.Nu = nu;
   settings.HasUnitVariance = unitVariance;
   this->Field.reset();
-  const std::tuple<double, int, bool> covariance{ width, nu, shares };
-  const auto known = this->Deviations.find(covariance);
+  const std::tuple<double, double, bool> covariance{ width, nu, shares };
+  const auto known = ranges ? this->Deviations.end() : this->Deviations.find(covariance);
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
@@ -68,33 +76,56 @@ void SurfaceFields::Prepare(
     });
   this->Prepared = wanted;
   constexpr std::size_t most = 16; // covariances, with a number per point each
-  if (unitVariance && known == this->Deviations.end() && this->Deviations.size() < most)
+  if (unitVariance && !ranges && known == this->Deviations.end() && this->Deviations.size() < most)
   {
     this->Deviations[covariance] = this->Field->Deviations();
   }
 }
 
-double SurfaceFields::Draw(
-  std::int64_t seed, std::int64_t first, const ColumnArray& fields, const nb::object& progress)
+template <typename Run>
+double SurfaceFields::InPanels(
+  const ColumnArray& columns, const nb::object& progress, const Run& run)
 {
   const UseGuard guard(this->InUse);
   double missed = 0.0;
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      const auto columns = static_cast<Eigen::Index>(fields.shape(1));
-      const auto all = static_cast<double>(columns);
-      for (Eigen::Index start = 0; start < columns; start += ColumnPanel)
+      const auto width = static_cast<Eigen::Index>(columns.shape(1));
+      const auto all = static_cast<double>(width);
+      for (Eigen::Index start = 0; start < width; start += ColumnPanel)
       {
-        const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, columns - start);
-        Values panel(this->NumberOfVertices(), count);
-        this->Field->Draw(seed, first + start, panel,
+        const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, width - start);
+        const Values panel = run(start, count,
           monitor.Part(static_cast<double>(start) / all, static_cast<double>(start + count) / all));
         missed = std::max(missed, this->Field->MissedResidual());
-        this->Write(panel, start, fields);
+        this->Write(panel, start, columns);
       }
     });
   return missed;
+}
+
+double SurfaceFields::Draw(
+  std::int64_t seed, std::int64_t first, const ColumnArray& fields, const nb::object& progress)
+{
+  return this->InPanels(fields, progress,
+    [&](Eigen::Index start, Eigen::Index count, const ProgressMonitor& part)
+    {
+      Values panel(this->NumberOfVertices(), count);
+      this->Field->Draw(seed, first + start, panel, part);
+      return panel;
+    });
+}
+
+double SurfaceFields::ApplyTransposed(const ColumnArray& weights, const nb::object& progress)
+{
+  return this->InPanels(weights, progress,
+    [&](Eigen::Index start, Eigen::Index count, const ProgressMonitor& part)
+    {
+      Values panel = this->Read(weights, start, count);
+      this->Field->ApplyTransposed(panel, part);
+      return panel;
+    });
 }
 
 double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray& wavelengths,
@@ -105,7 +136,7 @@ double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray&
     [&](const ProgressMonitor& monitor)
     {
       ResolventPolynomial filter = MakeScaleFilter(this->Built->SharedAssembler(),
-        this->WavelengthsOfVertices(wavelengths), order, PythonThreads::Instance());
+        this->LengthsOfVertices(wavelengths), order, PythonThreads::Instance());
       const auto columns = static_cast<Eigen::Index>(values.shape(1));
       const auto all = static_cast<double>(columns);
       for (Eigen::Index start = 0; start < columns; start += ColumnPanel)
@@ -130,7 +161,7 @@ double SurfaceFields::FilterScalesOfFaces(const ColumnArray& values, const Facto
     {
       const auto faces = static_cast<Index>(values.shape(0));
       CellScaleFilter filter(this->Built->SharedAssembler(), this->Built->Points(),
-        this->FacesOfTriangles(), faces, this->WavelengthsOfVertices(wavelengths), order,
+        this->FacesOfTriangles(), faces, this->LengthsOfVertices(wavelengths), order,
         PythonThreads::Instance());
       Eigen::Map<Values> columns(values.data(), faces, static_cast<Eigen::Index>(values.shape(1)));
       Values filtered = columns;
@@ -157,13 +188,13 @@ nb::object SurfaceFields::FaceAreas() const
   return NewArray(std::vector<double>(areas.data(), areas.data() + areas.size()));
 }
 
-Vector SurfaceFields::WavelengthsOfVertices(const FactorArray& wavelengths) const
+Vector SurfaceFields::LengthsOfVertices(const FactorArray& lengths) const
 {
   const TriangleMesh& mesh = this->Built->Mesh();
   Vector ofVertices(mesh.NumberOfVertices());
   for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
   {
-    ofVertices[i] = wavelengths.data()[mesh.InputVertex()[i]] / mesh.LengthUnit();
+    ofVertices[i] = lengths.data()[mesh.InputVertex()[i]] / mesh.LengthUnit();
   }
   return ofVertices;
 }

@@ -28,17 +28,21 @@ public:
     bool maskOnFaces, bool merges, double tolerance, const nanobind::object& progress);
 
   /// Take the covariance: Gaussian of the full width at half maximum `width` if nu is 0, and
-  /// otherwise Matern's with nu and the range `width`; white noise of variance 1 at each point if both are
-  /// 0. The last one is kept. shares: whether the variances are found with those of narrower Gaussian
+  /// otherwise Matern's with nu and the range `width`, or `ranges` of points; white noise of variance 1 at
+  /// each point if both are 0. The last one is kept. shares: whether the variances are found with those of narrower Gaussian
   /// fields before.
-  void Prepare(
-    double width, int nu, bool unitVariance, const nanobind::object& progress, bool shares);
+  void Prepare(double width, double nu, bool unitVariance, const nanobind::object& progress,
+    bool shares, const std::optional<FactorArray>& ranges);
   /// Forget what the variances of wider fields would need.
   void EndSharing() { this->Poles = SharedPoles(); }
   /// Write fields first, first + 1, ... to the columns; NaN at points that take no part. Returns the
   /// largest relative residual of solves above their tolerance.
   double Draw(std::int64_t seed, std::int64_t first, const ColumnArray& fields,
     const nanobind::object& progress);
+
+  /// The columns b, weights of points, become those of which b* F F* b are the covariances of the weighted
+  /// sums of fields: see RandomField::ApplyTransposed(). Returns as Draw().
+  double ApplyTransposed(const ColumnArray& weights, const nanobind::object& progress);
 
   /// Filter the columns by scale. wavelengths: per point. NaN at points that take no part.
   double FilterScales(const ColumnArray& values, const FactorArray& wavelengths, int order,
@@ -63,8 +67,11 @@ public:
   double MeanEdgeLength() const;
 
 private:
-  /// In the unit of the mesh, of the wavelengths of points.
-  Vector WavelengthsOfVertices(const FactorArray& wavelengths) const;
+  /// In the unit of the mesh, of the lengths of points.
+  Vector LengthsOfVertices(const FactorArray& lengths) const;
+  /// Do what `run` does to columns in panels of vertices and write them.
+  template <typename Run>
+  double InPanels(const ColumnArray& columns, const nanobind::object& progress, const Run& run);
   /// The face of each triangle of the mesh's input.
   std::vector<Index> FacesOfTriangles() const;
   Values Read(const ColumnArray& columns, Eigen::Index first, Eigen::Index count) const;
@@ -74,9 +81,9 @@ private:
   std::unique_ptr<const Surface> Built;
   std::unique_ptr<RandomField> Field;
   bool InUse = false;
-  std::map<std::tuple<double, int, bool>, Vector>
+  std::map<std::tuple<double, double, bool>, Vector>
     Deviations; ///< of fields with variance 1, by width, nu, and whether they were shared
-  std::tuple<double, int, bool, bool> Prepared; ///< of Field
+  std::tuple<double, double, bool, bool, std::vector<double>> Prepared; ///< of Field
   SharedPoles Poles;
 };
 

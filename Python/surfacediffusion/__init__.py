@@ -71,7 +71,7 @@ from importlib.metadata import version as _version
 
 from . import (
     _core, _derivatives, _distance, _fields, _functions, _operators, _paths, _resampling, _result, _scales, _solids,
-    _steps)
+    _steps, _surrogates)
 from ._derivatives import *  # noqa: F403
 from ._distance import *  # noqa: F403
 from ._fields import *  # noqa: F403
@@ -88,6 +88,7 @@ from ._scales import *  # noqa: F403
 from ._shape import ReliefResult, relief
 from ._solids import *  # noqa: F403
 from ._steps import *  # noqa: F403
+from ._surrogates import *  # noqa: F403
 from ._surface import Surface, on_faces, on_points, sphere
 from ._threads import get_number_of_threads, set_number_of_threads
 
@@ -109,6 +110,7 @@ __all__ += _result.__all__
 __all__ += _scales.__all__
 __all__ += _solids.__all__
 __all__ += _steps.__all__
+__all__ += _surrogates.__all__
 
 if hasattr(_os, "register_at_fork"):
     _os.register_at_fork(after_in_child=_core.after_fork)

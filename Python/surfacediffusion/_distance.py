@@ -247,8 +247,9 @@ def distances(
     """The distances from each of several points to all points that are no farther than `cutoff`. The
     memory is that of the result.
 
-    The matrix from all points to all points is symmetric to round-off with the method Exact. With Eikonal
-    it is not: a way and the way back have different errors.
+    The matrix from all points to all points is symmetric: to round-off with the method Exact. With Eikonal, by
+    which a way and the way back have different errors, it has their means, or the one within the cutoff; rows of
+    given sources have what was found from them.
 
     Parameters
     ----------
@@ -301,7 +302,26 @@ progress
         sentences = runner.warnings(run)
         reporter.finish_part()
     warn(sentences)
-    return sparse.csr_array(entries, shape=(len(entries[2]) - 1, surface.n_points))
+    found = sparse.csr_array(entries, shape=(len(entries[2]) - 1, surface.n_points))
+    return found if rows is not None else _means_with_transposed(found)
+
+
+def _means_with_transposed(matrix: Any) -> Any:
+    """The means of the entries ij and ji, or the one of them that is stored, if they differ beyond round-off.
+    Zeros stay stored."""
+    if not matrix.nnz or abs(matrix - matrix.T).max() <= 1e-12 * matrix.data.max():
+        return matrix
+    counts = matrix.copy()
+    counts.data = np.ones_like(matrix.data)
+    counts = counts + counts.T
+    one = matrix.copy()
+    one.data = matrix.data + 1.0  # no zero, which a sum would forget
+    total = (one + one.T).tocsr()
+    counts = counts.tocsr()
+    for sums in (total, counts):
+        sums.sort_indices()
+    total.data = total.data / counts.data - 1.0
+    return total
 
 
 #: The keywords of input arrays, by their names in messages.

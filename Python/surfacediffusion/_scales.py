@@ -53,7 +53,8 @@ def scale_filter(
     surface : Surface or tuple (points, faces)
         The surface.
     values : array_like, shape (n,) or (n, k), or (m,) or (m, k)
-        Data at points, or at faces. Those with NaN in any column are left out, as land is in the ocean.
+        Data at points, or at faces. Those with NaN are left out, as land is in the ocean. Columns with NaN at
+        the same places, such as the months of a depth, share a matrix and its factor.
     wavelength : float or array_like of shape (n,), above 0, in coordinates
         The wavelength, of which 1/3 is left: a number, or one per point, with which -Laplace / k^2
         becomes -div(k^-2 grad). Below two edges the mesh does not resolve it, and a warning says so.
@@ -96,22 +97,47 @@ def scale_filter(
     lengths = np.asarray(as_numbers("wavelength", wavelength), dtype=np.float64)
     require_shape("wavelength", lengths, lengths.shape in ((), (surface.n_points,)),
                   f"a number, or ({surface.n_points},), one per point")
-    fields = make_fields(surface, leave_out_missing(surface, left_out(mask, roi, surface), data, of_faces))
-    lengths = np.array(np.broadcast_to(lengths, (surface.n_points,)))
+    order = as_integer("order", order, 1, 2, "1 and 2")
+    outside, groups = left_out(mask, roi, surface), _columns_by_missing(data)
+    warned = False
+    with ProgressReporter(progress, len(groups)) as reporter:
+        for columns in groups:
+            part = np.ascontiguousarray(data[:, columns])
+            if np.isnan(part).all() and len(groups) > 1:
+                result[:, columns] = np.nan  # such as the sea at a depth that it does not have
+            else:
+                fields = make_fields(surface, leave_out_missing(surface, outside, part, of_faces))
+                known = _check_lengths(wavelength, lengths, fields, not warned)
+                warned = True
+                part[areas_of(fields, of_faces) == 0.0] = 0.0
+                with surface._lock:
+                    warn_of_solves(filter_scales(fields, of_faces, part, known, order, reporter.callable))
+                result[:, columns] = part
+            reporter.finish_part()
+    return result.reshape(np.shape(values))
+
+
+def _columns_by_missing(data: NDArray[np.float64]) -> list[NDArray[np.int64]]:
+    """The columns that are missing at the same places."""
+    missing = np.packbits(np.isnan(data), axis=0)
+    _, group = np.unique(missing, axis=1, return_inverse=True)
+    group = group.reshape(-1)
+    return [np.flatnonzero(group == k) for k in np.arange(group.max() + 1)]
+
+
+def _check_lengths(wavelength: ArrayLike, given: NDArray[np.float64], fields: Any, warns: bool) -> NDArray[np.float64]:
+    """The wavelength of each point; 1 where no triangle takes part."""
     known = fields.areas() > 0.0
+    lengths = np.array(np.broadcast_to(given, known.shape))
     bad = known & ~(np.isfinite(lengths) & (lengths > 0.0))
     if bad.any():
         row = int(np.argmax(bad))
         at = "" if np.ndim(wavelength) == 0 else f" in row {row}"
         raise ValueError(f"wavelength is {lengths[row]}{at}; allowed: finite numbers above 0")
-    order = as_integer("order", order, 1, 2, "1 and 2")
-    warn_of_edges("wavelength", float(lengths[known].min()), fields)
+    if warns:
+        warn_of_edges("wavelength", float(lengths[known].min()), fields)
     lengths[~known] = 1.0
-    result[areas_of(fields, of_faces) == 0.0] = 0.0
-    with surface._lock, ProgressReporter(progress) as reporter:
-        warn_of_solves(filter_scales(fields, of_faces, result, lengths, order, reporter.callable))
-        reporter.finish_part()
-    return result.reshape(np.shape(values))
+    return lengths
 
 
 class Spectrum(NamedTuple):

@@ -496,7 +496,7 @@ SurfaceLike = Union[Surface, Tuple[ArrayLike, Any], _PointsAndFaces, _Coordinate
                     _VerticesAndFaces, _VerticesAndTriangles]
 
 #: The attributes by which packages name points and faces.
-_NAMES = (("points", "faces"), ("coordinates", "faces"), ("vertices", "faces"), ("v", "t"))
+NAMES = (("points", "faces"), ("coordinates", "faces"), ("vertices", "faces"), ("v", "t"))
 
 
 def as_surface(surface: Any) -> Surface:
@@ -505,7 +505,7 @@ def as_surface(surface: Any) -> Surface:
         return surface
     if isinstance(surface, (tuple, list)) and len(surface) == 2:
         return Surface(*surface)
-    for points, faces in _NAMES:
+    for points, faces in NAMES:
         if hasattr(surface, points) and hasattr(surface, faces):
             found = getattr(surface, faces)
             if np.ndim(found) == 1 and hasattr(surface, "n_strips"):

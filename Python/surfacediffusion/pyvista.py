@@ -62,7 +62,6 @@ from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkPolyData
 from . import _core, _functions
 from ._distance import nearest_sources as _nearest_sources
 from ._fields import random_field as _random_field
-from ._fields import surrogates as _surrogates
 from ._models import ARRAYS, Output, as_mask, find_outputs, make_result, take_data
 from ._paths import geodesic_disk as _geodesic_disk
 from ._paths import geodesic_path as _geodesic_path
@@ -81,6 +80,7 @@ from ._scales import scale_filter as _scale_filter
 from ._settings import settings_of, shorten
 from ._shape import relief as _relief
 from ._surface import Surface, place
+from ._surrogates import surrogates as _surrogates
 
 __all__: list[str] = []
 __all__ += [*_functions.__all__, "distance", "geodesic_disk", "geodesic_path", "path_through", "random_field",
@@ -365,21 +365,23 @@ def geodesic_disk(
 
 
 def random_field(
-    mesh: Any, n: int = 1, *, fwhm: float | None = None, range: float | None = None, nu: int = 1,
-    seed: int = 0, normalize: bool = True, mask: str | None = None, roi: str | None = None,
+    mesh: Any, n: int = 1, *, fwhm: float | None = None, range: float | str | None = None,
+    nu: float = 1, seed: int = 0, on_faces: bool = False, normalize: bool = True, mask: str | None = None, roi: str | None = None,
     progress: Progress = False, result_array_name: str | None = None, **merging: Any,
 ) -> Any:
     """Draw Gaussian random fields of mean 0 and variance 1 on the mesh.
 
-    mask, roi: point or cell array; points and cells with a nonzero value, or with 0, are left out. All other
-    keywords are those of surfacediffusion.random_field. The result is the point array RandomField, with a
-    component per field, which becomes active, and NaN at points that are left out. result_array_name is the
+    mask, roi: point or cell array; points and cells with a nonzero value, or with 0, are left out. range: a
+    number, or a point array. All other keywords are those of surfacediffusion.random_field. The result is the
+    point array RandomField, or the cell array with on_faces, with a component per field, which becomes active, and NaN at points that are left out. result_array_name is the
     prefix of its name.
     """
 
     def draw(block: _Block) -> tuple[str, NDArray[Any]]:
+        block.on_faces = on_faces
+        ranges = block.find("range", range, faces=False) if isinstance(range, str) else range
         return "RandomField", _random_field(
-            block.surface, n, fwhm=fwhm, range=range, nu=nu, seed=seed, normalize=normalize,
+            block.surface, n, fwhm=fwhm, range=ranges, nu=nu, seed=seed, on_faces=on_faces, normalize=normalize,
             progress=progress, **block.find_all(mask=mask, roi=roi), **merging)
 
     return _add_columns(mesh, draw, result_array_name, is_prefix=True)
@@ -391,15 +393,15 @@ def surrogates(
 ) -> Any:
     """Draw surrogates of a map: random maps with its values and its smoothness.
 
-    array: point array with one component; default: the active scalars. mask, roi: point or cell array;
+    array: point or cell array with one component; default: the active scalars. mask, roi: point or cell array;
     points and cells with a nonzero value, or with 0, are left out. All other keywords are those of
-    surfacediffusion.surrogates. The result is a point array with a component per surrogate, which becomes
+    surfacediffusion.surrogates. The result is an array at the same place with a component per surrogate, which becomes
     active: that of the map's name followed by Surrogates, or result_array_name.
     """
 
     def draw(block: _Block) -> tuple[str, NDArray[Any]]:
-        values = block.find_data(array, faces=False)
-        found = _surrogates(block.surface, values, n, seed=seed, progress=progress,
+        values = block.find_whole(array)
+        found = _surrogates(block.surface, values, n, on_faces=block.on_faces, seed=seed, progress=progress,
                             **block.find_all(mask=mask, roi=roi))
         return block.name + "Surrogates", found.values
 
@@ -413,17 +415,17 @@ def scale_filter(
 ) -> Any:
     """Filter data by scale: a third is left of waves of the wavelength, more of longer ones.
 
-    array: point array; default: the active scalars. wavelength: a number, or a point array. mask, roi: point
+    array: point or cell array; default: the active scalars. wavelength: a number, or a point array. mask, roi: point
     or cell array; points and cells with a nonzero value, or with 0, are left out. The order is that of
     surfacediffusion.scale_filter. The result has the name of the array followed by Filtered, or
     result_array_name, and becomes active.
     """
     def filter_values(block: _Block) -> tuple[str, NDArray[Any]]:
-        values, lengths = block.find_data(array, faces=False), wavelength
+        values, lengths = block.find_whole(array), wavelength
         if isinstance(wavelength, str):
             lengths = block.find("wavelength", wavelength, faces=False)
         return block.name + "Filtered", _scale_filter(
-            block.surface, values, lengths, order=order, progress=progress,
+            block.surface, values, lengths, order=order, on_faces=block.on_faces, progress=progress,
             **block.find_all(mask=mask, roi=roi))
 
     return _add_columns(mesh, filter_values, result_array_name)
@@ -432,14 +434,21 @@ def scale_filter(
 def _add_columns(
     mesh: Any, find: Callable[[_Block], tuple[str, NDArray[Any]]], name: str | None, is_prefix: bool = False
 ) -> Any:
-    """Add a point array to each surface, without a second dimension if it has one column, and make it active.
-    find: its usual name and its values. name: in place of that name, or before it."""
+    """Add an array to each surface, at points or cells as its data are, without a second dimension if it has one
+    column, and make it active; cells that are no faces have NaN. find: its usual name and its values. name: in
+    place of that name, or before it."""
     blocks = _find_surfaces(mesh, "", {})
     for block in blocks:
         usual, values = find(block)
         given = (name or "") + usual if is_prefix else name or usual
-        block.mesh.point_data[given] = values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
-        block.mesh.set_active_scalars(given, "point")
+        values = values[:, 0] if values.ndim == 2 and values.shape[1] == 1 else values
+        if block.on_faces:
+            cells = np.full((block.mesh.n_cells, *values.shape[1:]), np.nan)
+            cells[block.face_cells] = values
+            block.mesh.cell_data[given] = cells
+        else:
+            block.mesh.point_data[given] = values
+        block.mesh.set_active_scalars(given, "cell" if block.on_faces else "point")
     return _rebuild(mesh, iter(blocks))
 
 

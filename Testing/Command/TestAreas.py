@@ -9,7 +9,7 @@ import numpy as np
 from samples import FACES, N, NOISE, POINTS
 
 from surfacediffusion import Surface, heat, heat_steps
-from surfacediffusion.command.inputs import vertex_areas
+from surfacediffusion.command.areas import vertex_areas
 from surfacediffusion.files import SurfaceFile
 
 AREAS = vertex_areas(SurfaceFile("", "off", POINTS, FACES))

@@ -193,7 +193,7 @@ CASES = [
      "--column 1 --column 2 --column 4",
      "series.dtseries.nii: the columns 1, 2, 4 of a time series; allowed: columns at equal"),
     ("smooth lh.surf.gii a.dscalar.nii 5 out.nii", "a.dscalar.nii .*; give --left and --right"),
-    ("smooth a.dscalar.nii 5 out.dscalar.nii --left lh.surf.gii", "--right is missing"),
+    ("smooth a.dscalar.nii 5 out.dscalar.nii --left lh.surf.gii", "data of CortexRight; add --right FILE"),
     ("smooth a.dscalar.nii 5 out.nii --left rh.surf.gii --right lh.surf.gii",
      "rh.surf.gii: a surface of CortexRight; allowed for --left: CortexLeft"),
     ("smooth a.dscalar.nii 5 out.nii --left other.surf.gii --right rh.surf.gii",

@@ -10,7 +10,7 @@ import unittest
 import numpy as np
 from samples import off_text, run
 
-from surfacediffusion.command.arguments import make_parser
+from surfacediffusion.command.arguments import SAME_WORDS, make_parser
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "Numpy"))
 from TestCoarse import SURFACES  # noqa: E402
@@ -27,7 +27,7 @@ WORDS = {
     "spectrum": "s.off v.npy 0.3 3", "random-field": "s.off out.npy --fwhm 0.3",
     "surrogates": "s.off v.npy out.npy", "resample": "s.off s.off v.npy out.npy", "info": "s.off v.npy"}
 #: Words of other programs, and that without files.
-OTHERS = {"metric-smoothing", "cifti-smoothing", "metric-resample", "doctor"}
+OTHERS = {word[1:] for word in SAME_WORDS} | {"doctor"}
 
 
 class CoarseFiles(unittest.TestCase):

@@ -24,7 +24,7 @@ from surfacediffusion import (
     Surface, denoise_mesh, distance, geodesic_path, get_number_of_threads, heat, interpolate, intrinsic_tv,
     nearest_sources, path_through, set_number_of_threads,
 )
-from surfacediffusion.command.inputs import vertex_areas
+from surfacediffusion.command.areas import vertex_areas
 from surfacediffusion.files import read_data, read_surface
 
 INSIDE = POINTS[:, 2] > -6
@@ -336,10 +336,19 @@ class OtherCommands(CommandTest):
             for surface in ("tkr.surf.gii", "lh.white", "lh.surf.gii"):
                 code, out, error = run("interpolate", surface, "values.csv", "out.shape.gii", "--exact", "--json")
                 self.assertEqual(code, 0, error)
-                text = "larger by its c_ras, (5, -18, 20): subtract it from theirs"
+                text = "larger by its c_ras, (5, -18, 20): give --ras scanner"
                 self.assertEqual(text in error, bool(np.any(offset)) and surface != "lh.surf.gii")
                 self.assertEqual("a shift by (-5" in error, bool(np.any(offset)))
                 self.assertGreater(json.loads(out)["largest_distance"], -1.0)
+        for surface in ("tkr.surf.gii", "lh.white"):  # of which the values are those at the scanner's coordinates
+            self.succeed(f"interpolate {surface} values.csv scanner.npy --exact --ras scanner")
+            place = ",".join(map(str, POINTS[7] + c_ras))
+            self.succeed(f"distance {surface} distance.npy --from {place} --ras scanner")
+            self.assertEqual(np.argmin(np.load("distance.npy")), 7)
+            np.testing.assert_allclose(np.load("scanner.npy").ravel()[::5], POINTS[::5, 2] + 20, atol=1e-3)
+        code, _, error = run(*"interpolate lh.surf.gii values.csv out.npy --ras scanner".split())
+        self.assertEqual(code, 2)
+        self.assertIn("--ras scanner with lh.surf.gii, which has no c_ras; allowed: surfaces of FreeSurfer", error)
 
     def test_interpolate_takes_points_beside_the_surface(self):
         places = 1.05 * POINTS[::5]

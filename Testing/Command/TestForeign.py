@@ -342,6 +342,11 @@ class FreeSurfer(ForeignTest):
             samples.write_surface(name)
             self.warned(expected.format(name, shape), "smooth", name, "lh.thickness", 5, "o.curv")
             self.warned(expected.format(name, shape), "distance", name, "o.curv", "--from", 0)
+        for name, shape in (("L.sphere.32k_fs_LR.surf.gii", "spherical"), ("sub-01_hemi-L_inflated.surf.gii", "inflated")):
+            image = nib.load(samples.write_surface(name))
+            image.darrays[0].meta.pop("GeometricType", None)
+            nib.save(image, name)
+            self.warned(expected.format(name, shape), "smooth", name, "lh.thickness", 5, "o.curv")
         for shape in ("Spherical", "Inflated", "Very_Inflated", "Flat"):
             image = nib.load(samples.write_surface("a.surf.gii"))
             image.darrays[0].meta["GeometricType"] = shape
@@ -409,7 +414,7 @@ class Sentences(ForeignTest):
         self.assertRegex(error, r"\Asurfacediffusion: b.off: .*\nsurfacediffusion: c.bin: .*\n\Z")
 
     def test_commands_of_workbench_are_answered_with_those_that_are_here(self):
-        for word, here in (("-metric-gradient", "derivatives"), ("-surface-geodesic-distance", "distance")):
+        for word, here in (("-cifti-gradient", "derivatives"), ("-metric-dilate", "inpaint, which fills by harmonic functions")):
             self.refused(f"^surfacediffusion: {word} is a command of Workbench .*; allowed: surfacediffusion "
                          f"{here}, or -metric-smoothing, -cifti-smoothing, -metric-resample", word, "a", "b", "c")
 

@@ -287,7 +287,7 @@ class Names(FormatTest):
         image = cifti2.Cifti2Image(NOISE[None], cifti2.Cifti2Header.from_axes(
             (cifti2.ScalarAxis(["a"]), models)))
         nib.save(image, "a.dscalar.nii")
-        self.refused("data at vertices of HippocampusLeft; allowed: CortexLeft, CortexRight, Cereb", "smooth",
+        self.refused("has data of HippocampusLeft; add --surface HIPPOCAMPUS_LEFT FILE", "smooth",
                      "a.dscalar.nii", 5, "b.dscalar.nii", "--left", "l.surf.gii")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from samples import FACES, N, NOISE, POINTS
 
 from surfacediffusion import Surface, heat, heat_steps
-from surfacediffusion.command.inputs import vertex_areas
+from surfacediffusion.command.areas import vertex_areas
 from surfacediffusion.files import SurfaceFile
 
 MAPS = np.random.default_rng(11).normal(size=(N, 3))

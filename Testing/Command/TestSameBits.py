@@ -21,7 +21,8 @@ ONE_STEP = {"time_integrator": "Exponential", "number_of_time_steps": 1}
 
 
 #: The commands without a row, and what holds them.
-ELSEWHERE = {"cifti-smoothing": "TestWorkbenchCifti", "doctor": "TestDoctor", "path": "TestCommand"}
+ELSEWHERE = {"cifti-smoothing": "TestWorkbenchCifti", "doctor": "TestDoctor", "path": "TestCommand",
+             "metric-estimate-fwhm": "TestWorkbenchWords", "surface-curvature": "TestWorkbenchWords"}
 
 
 def polygons():
@@ -140,6 +141,12 @@ class SameBits(unittest.TestCase):
              sd.resample(ball, s, ball.points > 0, method="Barycentric")),
             ("metric-resample v.npy a.off b.off ADAP_BARY_AREA out.npy -area-surfs a.off b.off",
              sd.resample(s, ball, values)),
+            ("metric-gradient a.off v.npy out.npy", np.linalg.norm(
+                sd.gradient(s, values).reshape(len(x), -1, 3), axis=2)),
+            ("surface-geodesic-distance a.off 5 out.npy", np.where(
+                np.isfinite(sd.distance(s, [5])), sd.distance(s, [5]), -1.0)),
+            ("surface-vertex-areas a.off out.npy", s.vertex_areas),
+            ("random-field a.off out.npy --range 9 --nu 1.5", sd.random_field(s, range=9, nu=1.5)),
             ("scale-filter a.off f.npy 12 out.npy --order 2 --faces", sd.scale_filter(s, of_faces, 12, order=2)),
             ("scale-filter a.off f.npy 12 out.npy --faces --roi inner.npy",
              np.nan_to_num(sd.scale_filter(s, of_faces, 12, roi=inner))),

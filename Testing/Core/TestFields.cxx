@@ -74,7 +74,7 @@ RandomField::Settings Gaussian(double width)
   return settings;
 }
 
-RandomField::Settings MaternField(double range, int nu)
+RandomField::Settings MaternField(double range, double nu)
 {
   RandomField::Settings settings;
   settings.Covariance = FieldCovariance::Matern;
@@ -85,7 +85,7 @@ RandomField::Settings MaternField(double range, int nu)
 
 std::vector<RandomField::Settings> AllCovariances()
 {
-  return { Gaussian(0.4), MaternField(0.8, 1), MaternField(0.8, 3) };
+  return { Gaussian(0.4), MaternField(0.8, 1), MaternField(0.8, 3), MaternField(0.8, 1.7) };
 }
 
 /// The weight of spherical harmonics of degree l in the covariance, without a factor.
@@ -228,7 +228,7 @@ TEST(FunctionDiagonal, IsThatOfTheDenseOperator)
     {
       const Vector expected =
         DenseFunction(*assembler, [&](double lambda) { return square(step * lambda); }).diagonal();
-      const Vector found = FunctionDiagonal(*assembler, CotanWeights(mesh), step, poles);
+      const Vector found = FunctionDiagonal(*assembler, CotanWeights(mesh), step, poles, Vector());
       EXPECT_LT((found - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-6) << step;
     }
   }
@@ -260,6 +260,72 @@ TEST(RandomField, HasTheVarianceOfTheDenseOperator)
       const Vector found = MakeField(assembler, settings).Deviations();
       EXPECT_LT((found - expected).cwiseQuotient(expected).cwiseAbs().maxCoeff(), 1e-3);
     }
+  }
+}
+
+// The covariances of all pairs of vertices by all eigenvectors, of any smoothness and with ranges that
+// differ from place to place.
+TEST(RandomField, OfAnySmoothnessHasTheCovarianceOfTheDenseOperator)
+{
+  for (const Testing::Surface& s : { Strip(24, 9, 3.0, 1.0), Disk(8),
+         Joined(Icosphere(2), Moved(Torus(16, 8), { 9.0, 0.0, 0.0 })) })
+  {
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Index n = mesh.NumberOfVertices();
+    SparseMatrix stiffness = ZeroMatrix(assembler->Pattern());
+    assembler->Fill(stiffness, Vector::Zero(n), 1.0, CotanWeights(mesh));
+    const Vector roots = mesh.ControlAreas().cwiseSqrt().cwiseInverse();
+    for (const bool differ : { false, true })
+    {
+      for (const double nu : { 0.05, 0.25, 0.5, 0.9, 1.0, 1.3, 2.0, 2.6, 3.0, 4.0 })
+      {
+        RandomField::Settings settings = MaternField(0.8 / mesh.LengthUnit(), nu);
+        if (differ)
+        {
+          const Values x =
+            Sample(mesh, s, [](const Eigen::RowVector3d& p) { return 1.0 + 0.6 * std::sin(p[0]); });
+          settings.Ranges = settings.Range * x.col(0);
+        }
+        const Vector ranges = differ ? settings.Ranges : Vector::Constant(n, settings.Range);
+        const Vector kappas = std::sqrt(8.0 * nu) * ranges.cwiseInverse();
+        Eigen::MatrixXd matrix =
+          roots.asDiagonal() * Eigen::MatrixXd(stiffness) * roots.asDiagonal();
+        matrix.diagonal() += kappas.cwiseAbs2();
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> dense(matrix);
+        const Eigen::MatrixXd vectors = roots.asDiagonal() * dense.eigenvectors();
+        const Eigen::MatrixXd covariance = vectors *
+          dense.eigenvalues().array().pow(-nu - 1.0).matrix().asDiagonal() * vectors.transpose();
+        const Vector deviations = covariance.diagonal().cwiseSqrt();
+        const Vector onPlane = kappas.array().pow(-nu) / std::sqrt(4.0 * Pi * nu);
+        for (const bool isUnit : { true, false })
+        {
+          settings.HasUnitVariance = isUnit;
+          const Vector scale = (isUnit ? deviations : onPlane).cwiseInverse();
+          Values found = Values::Identity(n, n);
+          MakeField(assembler, settings).ApplyTransposed(found);
+          const Values expected = scale.asDiagonal() * covariance * scale.asDiagonal();
+          const Values error = found.transpose() * found - expected;
+          EXPECT_LT(error.cwiseAbs().maxCoeff(), 5e-3 * expected.diagonal().maxCoeff())
+            << nu << " " << differ << " " << isUnit;
+        }
+      }
+    }
+  }
+}
+
+TEST(RandomField, DrawsWhatItsTransposeSays)
+{
+  const auto assembler = MakeAssembler(Disk(6));
+  const Index n = assembler->Mesh().NumberOfVertices();
+  for (const RandomField::Settings& settings : AllCovariances())
+  {
+    Values transposed = Values::Identity(n, n);
+    MakeField(assembler, settings).ApplyTransposed(transposed);
+    RandomField::Settings white = Gaussian(0.0);
+    const Values noise = Draw(assembler, white, 3);
+    const Values fields = Draw(assembler, settings, 3);
+    EXPECT_LT((fields - transposed.transpose() * noise).cwiseAbs().maxCoeff(), 1e-9);
   }
 }
 

@@ -102,12 +102,13 @@ class TestCode(unittest.TestCase):
         import surfacediffusion.examples
         import surfacediffusion.files
         import surfacediffusion.pyvista as of_meshes
+        import surfacediffusion.xarray as of_arrays
 
         pages = "".join((FOLDER / f"{page}.md").read_text(encoding="utf-8")
                         for page in ("python", "results", "pyvista", "files"))
         shown = re.findall(r"^\.\. auto(?:function|class):: (\S+?)(?:\(\))?$", pages, re.M)
         public = [f"{module.__name__}.{name}" for module in (
-            surfacediffusion, surfacediffusion.examples, surfacediffusion.files, of_meshes)
+            surfacediffusion, surfacediffusion.examples, surfacediffusion.files, of_meshes, of_arrays)
             for name in module.__all__]
         self.assertEqual(sorted(shown), sorted(public))
 

@@ -219,7 +219,7 @@ class Distance(unittest.TestCase):
 class Matrix(unittest.TestCase):
     def test_rows_are_distances_up_to_the_cutoff(self):
         surface = sd.sphere(3, 10.0)
-        found = sd.distances(surface, cutoff=6.0, method="Eikonal")
+        found = sd.distances(surface, np.arange(642), cutoff=6.0, method="Eikonal")
         self.assertEqual((found.shape, found.format), ((642, 642), "csr"))
         for source in (0, 5, 641):
             expected = sd.distance(surface, source, method="Eikonal")
@@ -245,6 +245,20 @@ class Matrix(unittest.TestCase):
         np.testing.assert_allclose(matrix, matrix.T, atol=1e-13)
         np.testing.assert_array_equal(sd.distances((points, faces), [7, 9], method="Exact").toarray(),
                                       matrix[[7, 9]])
+
+    def test_eikonal_distances_are_symmetric_within_a_cutoff(self):
+        ball = sd.sphere(3, 10.0)
+        for keywords in ({}, {"speed": 1.0 + (ball.points[:, 2] > 3.0)}):
+            rows = sd.distances(ball, np.arange(ball.n_points), cutoff=6.0, method="Eikonal", **keywords).toarray()
+            self.assertGreater(abs(rows - rows.T).max(), 1e-3)
+            found = sd.distances(ball, cutoff=6.0, method="Eikonal", **keywords)
+            matrix = found.toarray()
+            np.testing.assert_allclose(matrix, matrix.T, atol=1e-14)
+            both = (rows > 0) & (rows.T > 0)
+            np.testing.assert_allclose(matrix[both], ((rows + rows.T) / 2)[both], atol=1e-13)
+            one = (rows > 0) ^ (rows.T > 0)
+            np.testing.assert_allclose(matrix[one], (rows + rows.T)[one], atol=1e-13)
+            self.assertEqual(found.nnz, ball.n_points + (both | one).sum())
 
 
 if __name__ == "__main__":

@@ -213,8 +213,7 @@ class Meshes(unittest.TestCase):
         mesh.set_active_scalars("c")
         self.assertIn("cDiffused", heat(mesh, fwhm=0.3, refine_to=0.15).array_names)
         self.assertIn("cDiffused", heat(pyvista.MultiBlock([mesh]), fwhm=0.3)[0].array_names)
-        with self.assertRaisesRegex(ValueError, "array is 'c'; allowed: point arrays, 'p', 'both'"):
-            scale_filter(mesh, wavelength=1.0)
+        self.assertIn("cFiltered", scale_filter(mesh, wavelength=1.0).cell_data)
 
     def test_the_array_of_a_result_is_the_data_of_the_next_function(self):
         mesh = pyvista.Icosphere(nsub=3)
@@ -246,6 +245,29 @@ class Meshes(unittest.TestCase):
         np.testing.assert_array_equal(curved["PrincipalCurvatures"], report.principal)
         self.assertEqual(random_field(mesh, range=0.9, result_array_name="my")["myRandomField"].shape,
                          (mesh.n_points,))
+
+    def test_fields_scales_and_surrogates_at_cells_are_those_of_the_arrays(self):
+        mesh = pyvista.Icosphere(nsub=3)
+        surface = as_surface(mesh)
+        mesh.cell_data["c"] = sd.random_field(surface, fwhm=0.7, on_faces=True)[:, 0]
+        mesh.cell_data["part"] = (mesh.cell_centers().points[:, 2] > 0.3).astype(np.uint8)
+        masked = {"mask": sd.on_faces(mesh.cell_data["part"])}
+        for found, name, expected in (
+                (scale_filter(mesh, "c", wavelength=1.5, mask="part"), "cFiltered",
+                 sd.scale_filter(surface, mesh["c"], 1.5, **masked)),
+                (surrogates(mesh, "c", 3, mask="part"), "cSurrogates", sd.surrogates(surface, mesh["c"], 3, **masked).values),
+                (random_field(mesh, 2, range=0.9, nu=1.5, on_faces=True), "RandomField",
+                 sd.random_field(surface, 2, range=0.9, nu=1.5, on_faces=True))):
+            np.testing.assert_array_equal(found.cell_data[name], expected)
+            self.assertEqual(found.active_scalars_info.association, pyvista.FieldAssociation.CELL)
+        mesh.point_data["range"] = 0.6 + 0.3 * mesh.points[:, 0]
+        np.testing.assert_array_equal(random_field(mesh, range="range")["RandomField"],
+                                      sd.random_field(surface, range=mesh.point_data["range"])[:, 0])
+        # A line among the cells, which is no face.
+        lined = pyvista.PolyData(mesh.points, faces=mesh.faces, lines=np.array([2, 0, 1]))
+        lined.cell_data["c"] = np.arange(float(lined.n_cells))
+        found = scale_filter(lined, "c", wavelength=1.5)["cFiltered"]
+        self.assertEqual(np.isnan(found).sum(), 1)
 
     def test_blocks_without_the_array_stay(self):
         ball, bare = noisy_sphere(), pyvista.Icosphere(nsub=3)
@@ -320,7 +342,7 @@ class Meshes(unittest.TestCase):
         np.testing.assert_array_equal(null["fSurrogates"], sd.surrogates(surface, ball["f"], 3, seed=2).values)
         blocks = random_field(pyvista.MultiBlock([ball, None, noisy_sphere((3, 0, 0))]), fwhm=0.6)
         self.assertIn("RandomField", blocks[2].point_data)
-        with self.assertRaisesRegex(ValueError, "array is 'none'; allowed: point arrays"):
+        with self.assertRaisesRegex(ValueError, "array is 'none'; allowed: point or cell arrays"):
             scale_filter(ball, "none", wavelength=1.0)
         with self.assertRaisesRegex(ValueError, "fwhm and range are not given"):
             random_field(ball)

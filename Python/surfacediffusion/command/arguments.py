@@ -9,8 +9,9 @@ import re
 
 from . import (
     denoising, distances, doctor, edges, fields, filling, info, parts, resampling, scales, shape,
-    smoothing)
+    smoothing, workbench)
 from .common import PROGRAM, SIDES, Command, Commands, Parser
+from ..files.cifti import structure_of_word
 from .inputs import ArgumentProblem
 
 __all__ = ["make_parser", "parse"]
@@ -42,19 +43,24 @@ COMMANDS = (
     fields.add_surrogates,
     resampling.add_resample,
     resampling.add_metric_resample,
+    workbench.add_metric_gradient,
+    workbench.add_metric_estimate_fwhm,
+    workbench.add_surface_curvature,
+    workbench.add_surface_geodesic_distance,
+    workbench.add_surface_vertex_areas,
     info.add_info,
     doctor.add_doctor,
 )
 
 
 #: The commands with Workbench's names and arguments
-SAME_WORDS = ("-metric-smoothing", "-cifti-smoothing", "-metric-resample")
+SAME_WORDS = ("-metric-smoothing", "-cifti-smoothing", "-metric-resample", "-metric-gradient", "-metric-estimate-fwhm",
+              "-surface-curvature", "-surface-geodesic-distance", "-surface-vertex-areas")
 
 #: What other commands of Workbench are here
 WORKBENCH = {
-    "-metric-gradient": "derivatives", "-cifti-gradient": "derivatives", "-metric-dilate": "inpaint",
-    "-cifti-dilate": "inpaint", "-metric-estimate-fwhm": "fwhm", "-cifti-estimate-fwhm": "fwhm",
-    "-surface-geodesic-distance": "distance", "-surface-curvature": "curvature",
+    "-cifti-gradient": "derivatives", "-metric-dilate": "inpaint, which fills by harmonic functions",
+    "-cifti-dilate": "inpaint, which fills by harmonic functions", "-cifti-estimate-fwhm": "fwhm",
     "-surface-information": "info", "-file-information": "info", "-label-resample": "resample",
 }
 
@@ -71,10 +77,23 @@ def parse(argv):
         len(argv) > 1 and re.search(r"\.d[a-z]+\.nii$", argv[1]) is not None)
     parser = make_parser(hemispheres)
     complete(parser)
+    argv = _join_structures(argv)
     arguments = parser.parse_args(argv)
     if getattr(arguments, "cortex", False):
         arguments.roi = _cortex_label(parser, arguments)
     return arguments
+
+
+def _join_structures(argv):
+    """The words --areas STRUCTURE FILE as one argument of the option; STRUCTURE is in capitals, as CORTEX_LEFT."""
+    joined = []
+    for word in argv:
+        if len(joined) > 1 and joined[-2] in ("--areas", "-corrected-areas") and re.fullmatch(
+                "[A-Z]+(_[A-Z]+)*", joined[-1]):
+            joined[-1] = f"{structure_of_word(joined[-1])}\0{word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def make_parser(hemispheres=False):

@@ -13,10 +13,11 @@ from . import values
 PROGRAM = "surfacediffusion"
 
 #: The options that name the surface of a hemisphere
-SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface", "-cerebellum-surface")
+SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface", "-cerebellum-surface", "--surface",
+         "-surface")
 
 #: What a run reads where a command has no such argument
-ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "faces": False, "areas": None,
+ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "structures": [], "faces": False, "areas": [],
           "match_columns": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
 
 SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK."
@@ -33,8 +34,8 @@ def paragraph(text, width):
 FILES = f"""
 {SURFACES}
 """ + paragraph(
-    "DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left, --right and "
-    "--cerebellum instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), text with "
+    "DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left, --right, "
+    "--cerebellum and --surface STRUCTURE FILE instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), text with "
     "one number per line (.txt; # starts a comment), or a PLY or VTK file with data at its vertices; with "
     "--faces, where there is that option, at the faces. Files are recognised by their content, and may be "
     "compressed by gzip, or pipes. OUTPUT has the format and the metadata of DATA, and its name the extension "
@@ -101,6 +102,10 @@ def hemispheres(parser):
                         help="the surface of the right hemisphere")
     parser.add_argument("--cerebellum", "-cerebellum-surface", metavar="FILE",
                         help="the surface of the cerebellum, for files with its vertices")
+    parser.add_argument("--surface", "-surface", dest="structures", nargs=2, action="append", default=[],
+                        metavar=("STRUCTURE", "FILE"),
+                        help="the surface of another structure, by Workbench's word, such as HIPPOCAMPUS_LEFT or "
+                             "HIPPOCAMPUS_DENTATE_RIGHT; can be repeated")
 
 
 def surface_and_data(parser, many=False):
@@ -115,6 +120,14 @@ def surface_and_data(parser, many=False):
 
 def output(parser, text="the result"):
     parser.add_argument("output", metavar="OUTPUT", help=text)
+
+
+def areas(parser, *options):
+    """The words STRUCTURE FILE are joined by parse()."""
+    parser.add_argument(*options, dest="areas", metavar="FILE", action="append", default=[],
+                        help="the areas of the vertices in the first column, in place of those of "
+                             "the surface: for a surface that is the average of many. For CIFTI files also "
+                             "STRUCTURE FILE, with Workbench's word; can be repeated, for all surfaces or none")
 
 
 # ---- what is chosen of the data and of the surface -----------------------------------------------
@@ -170,6 +183,13 @@ def merging(arguments):
     tolerance = getattr(arguments, "merge_tolerance", None)
     return {"merge_coincident_points": getattr(arguments, "merge", False) or tolerance is not None,
             "merge_tolerance": tolerance or 0.0}
+
+
+def coordinates(parser, which):
+    """Of which points the coordinates are given."""
+    parser.add_argument("--ras", choices=("tkr", "scanner"), default="tkr",
+                        help=f"the coordinates of {which}: tkr: those of SURFACE (default); scanner: larger by "
+                             "FreeSurfer's c_ras, which is in the file of SURFACE")
 
 
 # ---- numbers -------------------------------------------------------------------------------------

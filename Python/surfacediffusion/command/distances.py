@@ -32,6 +32,7 @@ def add_distance(commands):
                         help="data at its vertices, whose nonzero vertices are the sources; each column "
                              "of its own")
     common.output(parser, "the distances, values at the vertices")
+    common.coordinates(parser, "PLACE")
     parser.add_argument("--from", dest="starts", metavar="PLACE", action="append", type=values.place,
                         help="in place of SOURCES: the number of a vertex, from 0, or x,y,z, which "
                              "stands for the nearest place of the surface; may be given several times")
@@ -62,7 +63,7 @@ def distance(arguments, report):
         inputs.refuse(arguments, ["--nearest"], "with --signed", "without it")
     surface = read_surface_for_output(arguments, report, lengths=True)
     with report.timed("read"):
-        sets, numbers, names = _read_sources(arguments, surface)
+        sets, numbers, names = _read_sources(arguments, surface, report)
         speed = None
         if arguments.speed is not None:
             speed = inputs.read_values(arguments.speed, surface, tables=False)[1][:, 0]
@@ -142,7 +143,7 @@ def _polyline(points):
                       " ".join(map(str, [count, *range(count)])), ""])
 
 
-def _read_sources(arguments, surface):
+def _read_sources(arguments, surface, report):
     """The vertices or coordinates of each set of sources, the number that each of them stands for, and the
     names of the columns."""
     count = len(surface.points)
@@ -153,7 +154,7 @@ def _read_sources(arguments, surface):
                 raise inputs.ArgumentProblem(f"--from is {place}; allowed: 0 to {count - 1}, the "
                                              f"vertices of {surface.path}, or x,y,z")
         places = arguments.starts if all(are_vertices) else [
-            surface.points[place] if is_vertex else place
+            surface.points[place] if is_vertex else inputs.to_surface(arguments, surface, place, report)
             for place, is_vertex in zip(arguments.starts, are_vertices)]
         return [np.array(places)], [np.arange(1, len(places) + 1)], ["distance"]
     content = read_content(arguments.sources)

@@ -7,7 +7,7 @@ from .. import random_field as draw_field
 from .. import surrogates as draw_surrogates
 from ..files import new_data
 from ..files.content import check_output_folder
-from . import common, inputs
+from . import common, inputs, values
 from .report import number
 from .stages import read, read_surface_for_output, require_known, write_new
 
@@ -27,8 +27,8 @@ def add_random_field(commands):
     common.positive(width, "--range", "R",
                     "the distance at which Matern's correlation has fallen to 0.14, in the unit of the "
                     "coordinates")
-    parser.add_argument("--nu", type=int, choices=(1, 3), default=1,
-                        help="the smoothness of Matern's correlation (default 1)")
+    parser.add_argument("--nu", metavar="NU", type=values.positive, default=1,
+                        help="the smoothness of Matern's correlation, up to 4 (default 1)")
     common.count_and_seed(parser, "fields", 1)
 
 

@@ -83,6 +83,7 @@ def add_interpolate(commands):
     common.positive(parser, "--within", "D",
                     "leave out points farther than D from the surface, in the unit of the coordinates "
                     "(default: none)")
+    common.coordinates(parser, "VALUES")
     parser.add_argument("--error", metavar="FILE",
                         help="write the standard error of the map, which is large where nothing was "
                              "measured, in one of the formats of OUTPUT")
@@ -98,6 +99,8 @@ def interpolate(arguments, report):
     if places is None:
         inputs.refuse(arguments, ["--within"], f"with values at vertices, in {arguments.values}",
                       "a table of points")
+    else:
+        places = inputs.to_surface(arguments, surface, places, report)
     target = new_data(surface, arguments.output, names)
     errors = new_data(surface, arguments.error, names) if arguments.error else None
     with report.working("Interpolation") as progress:
@@ -107,9 +110,9 @@ def interpolate(arguments, report):
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
             compute_error=errors is not None, robust=arguments.robust, progress=progress, **given(smoothing=arguments.smoothing),
             **common.merging(arguments))
-    if places is not None and surface.center.any() and result.median_distance > result.mean_edge_length:
+    if places is not None and arguments.ras == "tkr" and surface.center.any() and result.median_distance > result.mean_edge_length:
         report.warn(f"{surface.path} has FreeSurfer's coordinates, and points in the scanner's are larger by its "
-                    f"c_ras, ({', '.join(map(number_text, surface.center))}): subtract it from theirs")
+                    f"c_ras, ({', '.join(map(number_text, surface.center))}): give --ras scanner")
     rows = zip(result.smoothing, result.misfit, result.degrees_of_freedom, result.noise_level)
     report.facts.update(
         values=result.number_of_values, far_values=result.number_of_far_values,

@@ -14,6 +14,7 @@ from ..files import Data, FileError, Part
 from ..files.cifti import open_cifti
 from ..files.content import check_output_folder, check_output_name, read_content
 from . import inputs
+from .areas import read_areas, vertex_areas
 from .common import merging
 from .inputs import ArgumentProblem
 from .report import number
@@ -99,7 +100,7 @@ def _places(arguments, file, data, surfaces, width, voxel_width):
     places, voxels = [], []
     known = [entry.name for entry in file.structures if entry.vertices is not None]
     data.parts = [Part(np.empty((0, 0)), structure=name) for name in known]
-    areas = inputs.read_areas(arguments.areas, surfaces)
+    areas = read_areas(arguments.areas, surfaces)
     for entry in file.structures:
         if entry.vertices is None:
             voxels.append(entry)
@@ -132,7 +133,7 @@ def _surface_place(entry, part, surface, areas, width, arguments):
     def measure(inside):
         excluded = np.ones(solver.n_points, dtype=bool)
         excluded[entry.vertices[inside]] = False
-        return inputs.vertex_areas(surface, excluded, areas)[entry.vertices]
+        return vertex_areas(surface, excluded, areas)[entry.vertices]
 
     return _Place(entry.name, [entry.place], part, solve if width else None, measure)
 

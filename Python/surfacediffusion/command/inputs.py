@@ -12,7 +12,7 @@ import numpy as np
 
 from .._surface import Surface
 from ..files import Data, FileError, Part, SurfaceFile, read_data, read_surface
-from ..files.content import read_content
+from ..files.cifti import structure_of_word, word_of_structure
 from ..files.data import NO_VERTICES
 from ..files.surface import structure_of_name
 
@@ -56,7 +56,7 @@ class Patch:
 
 #: The arguments that name what a command writes, and what it reads beside DATA
 _OUTPUTS = {"output": "OUTPUT", "map": "--map", "curves": "--curves", "nearest": "--nearest", "error": "--error",
-            "valid": "-valid-roi-out"}
+            "valid": "-valid-roi-out", "vectors": "-vectors", "mean": "-mean", "gauss": "-gauss"}
 _INPUTS = ("surface", *SIDES, "roi", "areas", "missing", "residuals", "fixed", "speed", "sources", "values",
            "source", "target", "source_areas", "target_areas")
 
@@ -76,8 +76,10 @@ def check_files(arguments):
             raise ArgumentProblem(f"{path} is {seen[same]} and {word}; allowed: different files")
         seen[same] = word
         for name in _INPUTS:
-            other = getattr(arguments, name, None)
-            if not isinstance(other, str) or os.path.realpath(split_label(other)[0]) != same:
+            others = getattr(arguments, name, None)
+            others = others if isinstance(others, list) else [others]
+            if not any(isinstance(other, str) and os.path.realpath(split_label(other.split("\0")[-1])[0]) == same
+                       for other in others):
                 continue
             is_mesh = path.lower().endswith(_MESHES) or arguments.command == "denoise-mesh" or getattr(
                 arguments, "move", False)
@@ -135,7 +137,23 @@ def _read_surfaces(arguments):
                 raise FileError(f"{path}: a surface of {surface.structure}; allowed for --{side}: "
                                 f"{structure}")
             surfaces[structure] = surface
+    for word, path in arguments.structures:
+        structure = structure_of_word(word)
+        if structure in surfaces:
+            raise ArgumentProblem(f"--surface {word} and another surface of {structure}; allowed: one of them")
+        surfaces[structure] = lengths_of(read_surface(path))
     return surfaces
+
+
+def to_surface(arguments, surface, places, report):
+    """Points in the coordinates of the surface; they are given in those of --ras."""
+    if arguments.ras == "tkr":
+        return places
+    if not surface.center.any():
+        raise ArgumentProblem(f"--ras scanner with {surface.path}, which has no c_ras; allowed: surfaces of FreeSurfer, "
+                              "or of GIFTI with VolGeomC_R, VolGeomC_A and VolGeomC_S")
+    report.facts.update(ras="scanner", c_ras=[float(x) for x in surface.center])
+    return np.asarray(places, dtype=float) - surface.center
 
 
 def read_values(path, surface, tables=True):
@@ -311,42 +329,6 @@ def _labels_text(data):
     return ", ".join(shown[:40]) + (", ..." if len(shown) > 40 else "")
 
 
-def read_areas(path, surfaces):
-    """{id of the surface: areas of its vertices} from the first column; empty without a file."""
-    if path is None:
-        return {}
-    data, found = read_data(path), {}
-    for part in data.parts:
-        surface = surface_for(part, surfaces, data)
-        areas, absent = on_surface(part, part.values[:, :1].astype(float), surface, data)
-        areas = np.where(absent, vertex_areas(surface), areas[:, 0])
-        wrong = ~(np.isfinite(areas) & (areas > 0))
-        if wrong.any():
-            vertex = int(np.argmax(wrong))
-            raise FileError(f"{data.path}: the area of vertex {vertex} is {areas[vertex]:g}; allowed: "
-                            "finite numbers above 0")
-        found[id(surface)] = areas
-    return found
-
-
-def read_areas_or_surface(path, sphere: SurfaceFile):
-    """The areas of the vertices of a sphere: those of the surface in the file, or its first column; None
-    without a file."""
-    if path is None:
-        return None
-    content = read_content(path)
-    try:
-        surface = lengths_of(read_surface(content))
-    except FileError as error:
-        if "no surface" not in str(error):
-            raise
-        return read_areas(content, {"": sphere})[id(sphere)]
-    if len(surface.points) != len(sphere.points):
-        raise FileError(f"{path}: {len(surface.points)} points, but {sphere.path} has {len(sphere.points)}; "
-                        "allowed: the surface of the same vertices, or their areas")
-    return vertex_areas(surface)
-
-
 def _regions(arguments, surfaces, on_faces, own, columns):
     """{id of the surface: its flags}. own: data of which each column has its own region."""
     if own is not None:
@@ -372,12 +354,10 @@ def surface_for(part, surfaces, data):
         if data.kind != "cifti":
             raise ArgumentProblem(f"--left and --right are for CIFTI files; {data.path} is of one surface; "
                                   "allowed: a CIFTI file, or all files of one SURFACE")
-        if part.structure not in SIDES.values():
-            raise FileError(f"{data.path}: data at vertices of {part.structure}; allowed: "
-                            + ", ".join(SIDES.values()))
+        missing = [other.structure for other in data.parts if other.structure not in surfaces]
         if part.structure not in surfaces:
-            side = part.structure.replace("Cortex", "").lower()
-            raise ArgumentProblem(f"--{side} is missing: {data.path} has data of {part.structure}")
+            raise ArgumentProblem(f"{data.path} has data of {' and '.join(missing)}; add "
+                                  + " ".join(map(_option_of, missing)))
         return surfaces[part.structure]
     surface = surfaces[""]
     if len(data.parts) > 1:
@@ -392,6 +372,12 @@ def surface_for(part, surfaces, data):
         warnings.warn(f"{data.path} is of {side} by its name, but {surface.path} is of {surface.structure}",
                       stacklevel=2)
     return surface
+
+
+def _option_of(structure):
+    """The option by which the surface of a structure is given."""
+    sides = [f"--{side} FILE" for side, name in SIDES.items() if name == structure]
+    return sides[0] if sides else f"--surface {word_of_structure(structure)} FILE"
 
 
 def on_surface(part, values, surface, data):
@@ -430,20 +416,3 @@ def require_finite(values, data, part, columns):
         vertex = row if part.vertices is None else part.vertices[row]
         raise FileError(f"{data.path}: column {columns[column] + 1} is {values[row, column]} at "
                         f"vertex {vertex}; allowed: finite values, or NaN for missing")
-
-
-def vertex_areas(surface: SurfaceFile, excluded=None, given=None):
-    """The areas of the barycentric control cells (n,): a third of those of the triangles. Triangles
-    with an excluded corner take no part. given: the areas of whole cells in place of the true ones."""
-    solver = surface.solver
-    areas = solver._triangle_areas(excluded)
-    if given is not None:
-        whole = solver._triangle_areas()
-        areas = np.divide(areas * given, whole, out=areas, where=whole > 0)
-    return areas
-
-
-def face_areas(surface: SurfaceFile):
-    """The areas of the faces (m,)."""
-    solver = surface.solver
-    return np.bincount(solver._core.faces(), solver._areas_of_triangles(), minlength=len(surface.faces))

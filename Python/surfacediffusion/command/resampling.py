@@ -10,6 +10,7 @@ from ..files import FileError, read_data, read_surface
 from ..files.content import check_output_folder
 from ..files.data import data_for, new_data
 from . import common, inputs
+from .areas import read_areas_or_surface
 from .report import counted
 
 #: The methods by their names in Workbench
@@ -98,7 +99,7 @@ def resample(arguments, report, empty=np.nan):
     with report.timed("read"):
         source, target = (read_surface(path) for path in (arguments.source, arguments.target))
         _check_structures(source, target)
-        areas = [inputs.read_areas_or_surface(path, sphere) for path, sphere in (
+        areas = [read_areas_or_surface(path, sphere) for path, sphere in (
             (arguments.source_areas, source), (arguments.target_areas, target))]
         data = read_data(arguments.data)
         if data.kind == "cifti":

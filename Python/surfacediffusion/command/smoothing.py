@@ -104,6 +104,11 @@ def add_cifti_smoothing(commands):
     _kernels_are_fwhm(parser, "the kernels are full widths at half maximum")
     parser.add_argument("-cifti-roi", dest="roi", metavar="FILE",
                         help="a CIFTI file whose first column is above 0 in the region")
+    common.areas(parser, "-corrected-areas")
+    for side in ("left", "right", "cerebellum"):
+        parser.add_argument(f"-{side}-corrected-areas", dest="areas", metavar="FILE", action="append",
+                            type=lambda path, side=side: f"{inputs.SIDES[side]}\0{path}",
+                            help=f"the areas of the vertices of -{side}-surface")
     for place, word in (("volume", "among voxels"), ("surface", "on surfaces")):
         parser.add_argument(f"-fix-zeros-{place}", action="store_true",
                             help=f"zeros {word} mean missing, as NaN does")
@@ -123,9 +128,7 @@ def _merged_volume(parser, *options):
 
 
 def _areas_and_steps(parser):
-    parser.add_argument("--areas", "-corrected-areas", metavar="FILE",
-                        help="the areas of the vertices in the first column, in place of those of "
-                             "SURFACE: for a surface that is the average of many")
+    common.areas(parser, "--areas", "-corrected-areas")
     parser.add_argument("--mass-matrix", choices=("mixed", "lumped"),
                         help="mixed: white noise gets the width to 5 %% from 2 mean edge lengths on "
                              "(default); lumped: widths below 5 of them fall short, at 2 by a fifth")

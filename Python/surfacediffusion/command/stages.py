@@ -12,6 +12,7 @@ from .._run import part_of
 from ..files import FileError, new_data, read_data, read_surface, vtk_files, write_atomically
 from ..files.content import check_output_folder, check_range, kind_of_name
 from . import common, inputs
+from .areas import face_areas, read_areas, vertex_areas
 from .inputs import choose_columns, make_patches, read_surfaces
 from .report import counted, number
 
@@ -39,7 +40,7 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
     check_output_folder(arguments.output)
     with report.timed("read"):
         surfaces, data, columns, patches = read(arguments, missing, content)
-        areas = inputs.read_areas(arguments.areas, surfaces)
+        areas = read_areas(arguments.areas, surfaces)
         target, kept = _target(data, columns, patches[0].surface, arguments.output)
     if data.extra:
         report.warn(f"{data.path}: {data.extra}")
@@ -129,8 +130,8 @@ def _add_totals(report, data, columns, patch, new, areas):
     regions = [slice(None)] if patch.excluded.ndim == 1 else [[i] for i in range(len(columns))]
     for region in regions:
         excluded = patch.excluded_of(0 if isinstance(region, slice) else region[0])
-        sizes = (np.where(excluded, 0, inputs.face_areas(patch.surface)) if data.on_faces
-                 else inputs.vertex_areas(patch.surface, excluded, given))
+        sizes = (np.where(excluded, 0, face_areas(patch.surface)) if data.on_faces
+                 else vertex_areas(patch.surface, excluded, given))
         before, after = _integrals(sizes, patch.values[:, region]), _integrals(sizes, new[:, region])
         for k, i in enumerate(range(len(columns))[region] if isinstance(region, slice) else region):
             rows.append({"column": columns[i] + 1, "name": data.names[columns[i]],

@@ -8,6 +8,7 @@ import contextlib
 import gzip
 import io
 import os
+import re
 import shutil
 import tempfile
 import warnings
@@ -148,9 +149,29 @@ class CiftiFile:
                           axis.unit)
 
 
+def _add_structures(cifti2):
+    """Those that Workbench 2 has and nibabel 5.4 does not know."""
+    known = cifti2.CIFTI_BRAIN_STRUCTURES
+    for side in ("LEFT", "RIGHT"):
+        name = f"CIFTI_STRUCTURE_HIPPOCAMPUS_DENTATE_{side}"
+        if name not in known:
+            known.add_codes([(-1000 - len(side), name, "HippocampusDentate" + side.capitalize())])
+
+
+def structure_of_word(word):
+    """"CortexLeft" of Workbench's CORTEX_LEFT, and of the name in CIFTI files."""
+    return "".join(part.capitalize() for part in word.replace("CIFTI_STRUCTURE_", "").split("_"))
+
+
+def word_of_structure(name):
+    """Workbench's word of a structure."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).upper()
+
+
 def open_cifti(content) -> CiftiFile:
     """Read the description of a file; of a file on disk, no values yet."""
     cifti2 = import_reader("nibabel.cifti2", content)
+    _add_structures(cifti2)
     from nibabel.fileholders import FileHolder
 
     with reading(content):
@@ -219,8 +240,7 @@ def _millimetres(header):
 def _structure(axis, unit, name, block, model):
     """"CortexLeft" for CIFTI_STRUCTURE_CORTEX_LEFT, as GIFTI has it."""
     place = slice(*block.indices(len(axis))[:2])
-    words = name.replace("CIFTI_STRUCTURE_", "").split("_")
-    structure = Structure("".join(word.capitalize() for word in words), place)
+    structure = Structure(structure_of_word(name), place)
     if model.volume_mask.any():
         structure.voxels, structure.affine = np.asarray(model.voxel), np.array(model.affine, dtype=float)
         structure.affine[:3] *= unit

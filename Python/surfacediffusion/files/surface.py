@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 import os
+import re
 import tempfile
 import warnings
 from dataclasses import dataclass, field
@@ -51,8 +52,12 @@ class SurfaceFile:
         if they say nothing."""
         if self.kind == "gifti":
             points = self.image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")[0]
-            return (points.meta.get("GeometricType") or "").lower()
-        words = os.path.basename(self.path).lower().split(".") if self.kind in ("freesurfer", "asc") else []
+            given = (points.meta.get("GeometricType") or "").lower()
+            if given not in ("", "unknown"):
+                return given
+        name = os.path.basename(self.path).lower()
+        words = re.split("[._-]", name) if self.kind == "gifti" else (
+            name.split(".") if self.kind in ("freesurfer", "asc") else [])
         found = [shape for word, shape in _SHAPES.items() if word in words[1:]]
         return found[0] if found else ""
 

@@ -12,30 +12,39 @@
 namespace SurfaceDiffusion
 {
 
-PoleSum FitPoles(const std::function<double(double)>& g, double first, double last, int count)
+double WeightOfEigenvalue(double x)
+{
+  constexpr double atZero = 0.03; // the weight of small x, which are all there is if s is small
+  return atZero + x;
+}
+
+PoleSum FitPoles(const std::function<double(double)>& g, double first, double last, int count,
+  const std::function<double(double)>& weight, bool hasConstant)
 {
   constexpr int samples = 2000;
   constexpr double smallest = 1e-4;
   constexpr double largest = 1e6;
-  constexpr double atZero = 0.03; // the weight of small x, which are all there is if s is small
   PoleSum sum;
   sum.Poles.resize(count);
   for (int j = 0; j < count; ++j)
   {
     sum.Poles[j] = first * std::pow(last / first, count > 1 ? j / (count - 1.0) : 0.0);
   }
-  Eigen::MatrixXd terms(samples, count);
+  Eigen::MatrixXd terms(samples, count + (hasConstant ? 1 : 0));
   Vector wanted(samples);
   for (int i = 0; i < samples; ++i)
   {
     const double x = smallest * std::pow(largest / smallest, i / (samples - 1.0));
-    const double weight = atZero + x;
-    terms.row(i) = (weight / (sum.Poles.array() + x)).transpose();
-    wanted[i] = weight * g(x);
+    const double w = weight(x);
+    terms.row(i).head(count) = (w / (sum.Poles.array() + x)).transpose();
+    terms.row(i).tail(terms.cols() - count).setConstant(w);
+    wanted[i] = w * g(x);
   }
   const Vector sizes = terms.colwise().norm();
   terms.array().rowwise() /= sizes.transpose().array();
-  sum.Residues = terms.colPivHouseholderQr().solve(wanted).cwiseQuotient(sizes);
+  const Vector found = terms.colPivHouseholderQr().solve(wanted).cwiseQuotient(sizes);
+  sum.Residues = found.head(count);
+  sum.Constant = hasConstant ? found[count] : 0.0;
   return sum;
 }
 
@@ -51,8 +60,8 @@ double SharedPoles::Near(double p)
 }
 
 Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coefficients, double s,
-  const PoleSum& f, const ParallelFor& parallel, const ProgressMonitor& progress,
-  SharedPoles* shared)
+  const PoleSum& f, const Vector& extra, const ParallelFor& parallel,
+  const ProgressMonitor& progress, SharedPoles* shared)
 {
   const TriangleMesh& mesh = assembler.Mesh();
   Vector diagonal = Vector::Zero(mesh.NumberOfVertices());
@@ -74,7 +83,12 @@ Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coeffic
       known[shared ? shared->NumberOf(f.Poles[j] / s) : static_cast<int>(j)]; // over s
     if (inverse.size() == 0)
     {
-      assembler.Fill(matrix, f.Poles[j] * mesh.ControlAreas(), s, coefficients, nullptr, parallel);
+      Vector masses = f.Poles[j] * mesh.ControlAreas();
+      if (extra.size() > 0)
+      {
+        masses += extra.cwiseProduct(mesh.ControlAreas());
+      }
+      assembler.Fill(matrix, masses, s, coefficients, nullptr, parallel);
       factor.Compute(
         matrix, isRegular, resolved, parallel, progress.Part(done / count, (done + 0.5) / count));
       inverse = s *

@@ -11,17 +11,21 @@
 namespace SurfaceDiffusion
 {
 
-/// A sum of simple poles, sum_j c_j / (q_j + x), that is near to a function on x >= 0.
+/// A sum of simple poles, c + sum_j c_j / (q_j + x), that is near to a function on x >= 0.
 struct PoleSum
 {
   Vector Poles; ///< q > 0
-  Vector Residues; ///< c
+  Vector Residues; ///< c_j
+  double Constant = 0.0; ///< c
 };
 
-/// The residues minimise the squared error of the sum, weighted by x + 0.03, over log x: the number
-/// of eigenvalues of a surface below x grows as x does. g falls faster than 1 / x. The poles are
-/// `count` numbers from first to last with equal ratios.
-PoleSum FitPoles(const std::function<double(double)>& g, double first, double last, int count);
+/// x + 0.03: the number of eigenvalues of a surface below x grows as x does.
+double WeightOfEigenvalue(double x);
+
+/// The residues minimise the squared error of the sum, times `weight`, over log x. The poles are
+/// `count` numbers from first to last with equal ratios. Without a constant g falls faster than 1 / x.
+PoleSum FitPoles(const std::function<double(double)>& g, double first, double last, int count,
+  const std::function<double(double)>& weight = &WeightOfEigenvalue, bool hasConstant = false);
 
 /// Diagonals of (p M + K)^-1 at poles p that have equal ratios, which functions of several scales s
 /// share: their poles q over s are some of these.
@@ -36,12 +40,13 @@ struct SharedPoles
   double Near(double p);
 };
 
-/// The diagonal of f(s L) M^-1 with L = M^-1 K and f the sum of poles: per vertex. It is
-///   sum_j c_j diag (q_j M + s K)^-1,
-/// by selected inversion of one factor after another. shared: of functions of growing scales; those that
+/// The diagonal of f(s L + e) M^-1 with L = M^-1 K and f the sum of poles without a constant: per vertex.
+/// It is
+///   sum_j c_j diag ((q_j + e) M + s K)^-1,
+/// by selected inversion of one factor after another. extra: e; no row: 0. shared: of functions of growing scales; those that
 /// no larger one needs are forgotten. Throws Aborted, std::bad_alloc.
 Vector FunctionDiagonal(const Assembler& assembler, const CornerWeights& coefficients, double s,
-  const PoleSum& f, const ParallelFor& parallel = SerialFor(),
+  const PoleSum& f, const Vector& extra, const ParallelFor& parallel = SerialFor(),
   const ProgressMonitor& progress = ProgressMonitor(), SharedPoles* shared = nullptr);
 
 } // namespace SurfaceDiffusion

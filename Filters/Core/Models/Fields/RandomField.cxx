@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -28,14 +29,38 @@ const double RatioOfShared = std::cbrt(4.0);
 /// What the covariance means for the numerics.
 struct FieldOperator
 {
-  double Step; ///< s of the resolvent
-  std::vector<double> Series;
-  double DeviationOnPlane; ///< of p(Y) W
+  double Step = 0.0; ///< s of the resolvent
+  std::vector<double> Series; ///< of p; none: a power
+  Vector Extra; ///< e of ResolventPower; no row: 0
+  double DeviationOnPlane = 1.0; ///< of p(Y) W
   PoleSum Squared; ///< near to p^2 as a function of s lambda
 };
 
+/// Of Matern with ranges that differ or a power that is no polynomial: the largest range is that of e = 0.
+FieldOperator MakePower(const RandomField::Settings& settings)
+{
+  FieldOperator found;
+  const double largest = settings.Ranges.size() > 0 ? settings.Ranges.maxCoeff() : settings.Range;
+  const double kappa = std::sqrt(8.0 * settings.Nu) / largest;
+  found.Step = 1.0 / (kappa * kappa);
+  if (settings.Ranges.size() > 0)
+  {
+    found.Extra = (largest / settings.Ranges.array()).square() - 1.0;
+  }
+  found.DeviationOnPlane = kappa / std::sqrt(4.0 * Pi * settings.Nu);
+  found.Squared = PolesOfSquaredPower(
+    0.5 * (settings.Nu + 1.0), found.Extra.size() > 0 ? found.Extra.maxCoeff() : 0.0);
+  return found;
+}
+
 FieldOperator MakeOperator(const RandomField::Settings& settings, SharedPoles* shared)
 {
+  const bool isPolynomial = settings.Nu == 1.0 || settings.Nu == 3.0;
+  if (settings.Covariance == FieldCovariance::Matern &&
+    (!isPolynomial || settings.Ranges.size() > 0))
+  {
+    return MakePower(settings);
+  }
   FieldOperator found;
   double first = 0.8; // poles near the one of the function itself: an error of 1e-7
   double last = 1.2;
@@ -63,7 +88,7 @@ FieldOperator MakeOperator(const RandomField::Settings& settings, SharedPoles* s
   {
     const double kappa = std::sqrt(8.0 * settings.Nu) / settings.Range;
     found.Step = 1.0 / (kappa * kappa);
-    const int degree = (settings.Nu + 1) / 2; // alpha / 2
+    const int degree = settings.Nu == 1.0 ? 1 : 2; // alpha / 2
     found.Series = ChebyshevSeries([degree](double y) { return std::pow(y, degree); }, degree);
     found.DeviationOnPlane = kappa / std::sqrt(4.0 * Pi * settings.Nu);
   }
@@ -81,10 +106,11 @@ FieldOperator MakeOperator(const RandomField::Settings& settings, SharedPoles* s
 /// surface a constant. Their widths within these bounds have squares that are no zero and finite.
 RandomField::Settings WithinBounds(RandomField::Settings settings, double h, double size)
 {
-  for (double* const width : { &settings.Width, &settings.Range })
-  {
-    *width = std::max(1e-3 * h, std::min(*width, 1e6 * std::max(size, h)));
-  }
+  const auto bound = [&](double width)
+  { return std::max(1e-3 * h, std::min(width, 1e6 * std::max(size, h))); };
+  settings.Width = bound(settings.Width);
+  settings.Range = bound(settings.Range);
+  settings.Ranges = settings.Ranges.unaryExpr(bound).eval();
   return settings;
 }
 
@@ -153,38 +179,101 @@ RandomField::RandomField(std::shared_ptr<const Assembler> assembler,
   this->DeviationOnPlane = made.DeviationOnPlane;
   if (settings.HasUnitVariance && this->RelativeDeviations.size() == 0)
   {
-    Vector variances = FunctionDiagonal(
-      *this->Assembly, coefficients, made.Step, made.Squared, parallel, progress, shared);
-    BoundVariances(mesh, made.Step, variances);
+    Vector variances = FunctionDiagonal(*this->Assembly, coefficients, made.Step, made.Squared,
+      made.Extra, parallel, progress, shared);
+    if (made.Extra.size() == 0)
+    {
+      BoundVariances(mesh, made.Step, variances);
+    }
     this->RelativeDeviations = variances.cwiseSqrt() / made.DeviationOnPlane;
   }
+  else if (!settings.HasUnitVariance && made.Extra.size() > 0)
+  {
+    // On the plane with the range of each vertex the variance is as kappa^(-2 nu).
+    this->RelativeDeviations = (made.Extra.array() + 1.0).pow(-0.5 * settings.Nu);
+  }
+  if (made.Series.empty())
+  {
+    this->Operator.emplace<ResolventPower>(
+      this->Assembly, coefficients, made.Step, made.Extra, 0.5 * (settings.Nu + 1.0), parallel);
+    return;
+  }
   auto solver = MakeResolventSolver(mesh, made.Step, made.Series, parallel);
-  this->Operator.emplace(
+  this->Operator.emplace<ResolventPolynomial>(
     this->Assembly, coefficients, made.Step, std::move(made.Series), std::move(solver), parallel);
 }
 
 void RandomField::Draw(
   std::int64_t seed, std::int64_t first, Values& fields, const ProgressMonitor& progress)
 {
-  const TriangleMesh& mesh = this->Assembly->Mesh();
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
+  ForEach(this->Parallel, this->Assembly->Mesh().NumberOfVertices(),
     [&](Index i)
     {
-      const double deviation = this->Operator ? 1.0 / std::sqrt(mesh.ControlAreas()[i]) : 1.0;
+      const double deviation = this->DeviationOfNoise(i);
       for (Eigen::Index k = 0; k < fields.cols(); ++k)
       {
         fields(i, k) =
           deviation * NormalRandom(seed, first + k, this->Ids[static_cast<std::size_t>(i)]);
       }
     });
-  if (!this->Operator)
+  this->Apply(fields, progress);
+  this->Divide(fields);
+}
+
+void RandomField::ApplyTransposed(Values& b, const ProgressMonitor& progress)
+{
+  if (std::holds_alternative<std::monostate>(this->Operator))
   {
     return;
   }
-  this->Operator->ForgetResiduals();
-  this->Operator->Apply(fields, progress);
+  this->Divide(b);
+  b.array().colwise() /= this->Assembly->Mesh().ControlAreas().array();
+  this->Apply(b, progress);
+  b.array().colwise() *= this->Assembly->Mesh().ControlAreas().array().sqrt();
+}
+
+double RandomField::MissedResidual() const
+{
+  return std::visit(
+    [](const auto& function)
+    {
+      if constexpr (std::is_same_v<std::decay_t<decltype(function)>, std::monostate>)
+      {
+        return 0.0;
+      }
+      else
+      {
+        return function.MissedResidual();
+      }
+    },
+    this->Operator);
+}
+
+double RandomField::DeviationOfNoise(Index i) const
+{
+  return std::holds_alternative<std::monostate>(this->Operator)
+    ? 1.0
+    : 1.0 / std::sqrt(this->Assembly->Mesh().ControlAreas()[i]);
+}
+
+void RandomField::Apply(Values& fields, const ProgressMonitor& progress)
+{
+  std::visit(
+    [&](auto& function)
+    {
+      if constexpr (!std::is_same_v<std::decay_t<decltype(function)>, std::monostate>)
+      {
+        function.ForgetResiduals();
+        function.Apply(fields, progress);
+      }
+    },
+    this->Operator);
+}
+
+void RandomField::Divide(Values& fields) const
+{
   const bool isScaled = this->RelativeDeviations.size() > 0;
-  ForEach(this->Parallel, mesh.NumberOfVertices(),
+  ForEach(this->Parallel, static_cast<Index>(fields.rows()),
     [&](Index i)
     {
       const double relative = isScaled ? this->RelativeDeviations[i] : 1.0;

@@ -4,10 +4,11 @@
 
 #include "Core/Models/Fields/FunctionDiagonal.h"
 #include "Core/Models/Fields/ResolventPolynomial.h"
+#include "Core/Models/Fields/ResolventPower.h"
 
 #include <cstdint>
 #include <memory>
-#include <optional>
+#include <variant>
 #include <vector>
 
 namespace SurfaceDiffusion
@@ -19,7 +20,7 @@ enum class FieldCovariance
   /// White noise after the heat equation, exp(-t L) W: on the plane the correlation at distance r is
   /// exp(-r^2 / (8 t)).
   Gaussian,
-  /// The solution of (kappa^2 + L)^(alpha/2) u = W with alpha = nu + 1, for nu = 1 and 3: on the
+  /// The solution of (kappa^2 + L)^(alpha/2) u = W with alpha = nu + 1, for nu in (0, 4]: on the
   /// plane the correlation is that of Matern's class, (kappa r)^nu K_nu(kappa r) / (2^(nu-1)
   /// Gamma(nu)) (F. Lindgren, H. Rue, J. Lindstrom, J. R. Statist. Soc. B 73, 2011).
   Matern
@@ -39,7 +40,9 @@ public:
     /// Full width at half maximum of the kernel of Gaussian; 0: white noise of variance 1 at each vertex
     double Width = 1.0;
     double Range = 1.0; ///< of Matern, above 0: sqrt(8 nu) / kappa, where the correlation is 0.14
-    int Nu = 1; ///< of Matern: 1 or 3
+    Vector
+      Ranges; ///< per vertex, in place of Range, within a factor of 10; no row: the same everywhere
+    double Nu = 1.0; ///< of Matern: above 0, up to 4; other numbers than 1 and 3 are exact to 0.5 %
     bool HasUnitVariance = true; ///< at each vertex, rather than on the plane
   };
 
@@ -58,20 +61,32 @@ public:
   void Draw(std::int64_t seed, std::int64_t first, Values& fields,
     const ProgressMonitor& progress = ProgressMonitor());
 
+  /// With fields F w of independent deviates w of variance 1, one per vertex, b becomes the transpose of F
+  /// times b: the covariances of sums b* F w of fields are the products b* F F* b. Throws NotConverged and
+  /// Aborted.
+  void ApplyTransposed(Values& b, const ProgressMonitor& progress = ProgressMonitor());
+
   /// The standard deviations before the division, relative to that on the plane; no row if they are
   /// not needed.
   const Vector& Deviations() const { return this->RelativeDeviations; }
 
-  /// Of the last Draw(): see ResolventPolynomial.
-  double MissedResidual() const { return this->Operator ? this->Operator->MissedResidual() : 0.0; }
+  /// Of the last Draw() or ApplyTransposed(): see ResolventPolynomial.
+  double MissedResidual() const;
 
 private:
+  using Function = std::variant<std::monostate, ResolventPolynomial, ResolventPower>;
+
+  double DeviationOfNoise(Index vertex) const;
+  void Apply(Values& fields, const ProgressMonitor& progress);
+  void Divide(Values& fields) const; ///< by the deviations
+
   std::shared_ptr<const Assembler> Assembly;
   const ParallelFor& Parallel;
   std::vector<std::int64_t> Ids;
   double DeviationOnPlane = 1.0;
-  Vector RelativeDeviations;
-  std::optional<ResolventPolynomial> Operator; ///< none of white noise
+  Vector
+    RelativeDeviations; ///< what fields are divided by beside DeviationOnPlane; no row: nothing
+  Function Operator; ///< none of white noise
 };
 
 } // namespace SurfaceDiffusion

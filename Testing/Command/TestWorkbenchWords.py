@@ -1,0 +1,122 @@
+# SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Commands with Workbench's names and arguments beside wb_command: gradients, curvatures, distances from a
+vertex, areas of vertices and the smoothness of columns."""
+
+import re
+import shutil
+import subprocess
+import unittest
+
+import numpy as np
+import samples
+from samples import run
+from TestWorkbench import WorkbenchTest
+
+from surfacediffusion import Surface, heat
+from surfacediffusion.files import read_data
+
+POINTS, FACES = samples.sphere(5, 50.0)
+POINTS = POINTS * [1.0, 0.8, 0.7]
+
+
+def columns(path):
+    return read_data(path).parts[0].values.astype(float)
+
+
+class WordsTest(WorkbenchTest):
+    def setUp(self):
+        super().setUp()
+        samples.write_surface("a.surf.gii", POINTS, FACES)
+        self.maps = heat((POINTS, FACES), np.random.default_rng(1).normal(size=(len(POINTS), 3)), fwhm=10)
+        samples.write_gifti("a.func.gii", {name: self.maps[:, k] for k, name in enumerate("xyz")})
+        samples.write_gifti("roi.func.gii", {"roi": POINTS[:, 0] > -10})
+        self.areas = Surface(POINTS, FACES).vertex_areas
+        samples.write_gifti("areas.func.gii", {"areas": 1.44 * self.areas})
+
+
+@unittest.skipUnless(shutil.which("wb_command"), "needs Connectome Workbench")
+class SameAsWorkbench(WordsTest):
+    def both(self, line, *outputs):
+        """The columns of outputs, named @ in the line, of this command and of Workbench."""
+        found = []
+        for name in ("ours", "theirs"):
+            words = line.replace("@", name).split()
+            if name == "ours":
+                self.succeed(*words)
+            else:
+                subprocess.run(["wb_command", *words], check=True, stdout=subprocess.DEVNULL)
+            found.append([columns(output.replace("@", name)) for output in outputs])
+        return zip(*found)
+
+    def close(self, ours, theirs, share):
+        self.assertEqual(ours.shape, theirs.shape)
+        self.assertLess((np.sqrt(np.mean((ours - theirs)**2, axis=0)) / theirs.std(axis=0)).max(), share)
+
+    def test_areas(self):
+        for ours, theirs in self.both("-surface-vertex-areas a.surf.gii @.func.gii", "@.func.gii"):
+            np.testing.assert_allclose(ours, theirs, rtol=1e-5)
+
+    def test_curvatures_with_their_signs(self):
+        for ours, theirs in self.both("-surface-curvature a.surf.gii -mean @m.func.gii -gauss @g.func.gii",
+                                      "@m.func.gii", "@g.func.gii"):
+            self.assertTrue((ours > 0).all())
+            self.close(ours, theirs, 0.03)
+
+    def test_distances_from_a_vertex(self):
+        for words, factor in (("-limit 30", 1.0), ("", 1.0), ("-corrected-areas areas.func.gii", 1.2)):
+            for ours, theirs in self.both(f"-surface-geodesic-distance a.surf.gii 17 @.func.gii {words}",
+                                          "@.func.gii"):
+                both = (ours > 5 * factor) & (theirs > 5 * factor)
+                self.assertGreater(both.sum(), 500)
+                ratio = theirs[both] / ours[both]
+                self.assertLess(abs(ratio.mean() - 1.015), 0.02)
+                self.assertGreater(ratio.min(), 0.98)
+                self.assertLess(ratio.max(), 1.08)
+                self.assertLess(abs((ours == -1).sum() - (theirs == -1).sum()), 60)
+                self.assertEqual((ours == -1).any(), "-limit" in words)
+
+    def test_gradients_and_their_vectors(self):
+        for words in ("", "-presmooth 4 -fwhm -roi roi.func.gii", "-presmooth 3 -column 2"):
+            for ours, theirs in self.both(f"-metric-gradient a.surf.gii a.func.gii @.func.gii -vectors @v.func.gii {words}",
+                                          "@.func.gii", "@v.func.gii"):
+                self.close(ours, theirs, 0.08)
+                if "-roi" in words:
+                    np.testing.assert_array_equal(ours[POINTS[:, 0] <= -10], 0)
+
+    def test_smoothness_of_columns_and_of_the_file(self):
+        for words in ("", "-column y", "-whole-file", "-whole-file -demean", "-roi roi.func.gii"):
+            line = f"-metric-estimate-fwhm a.surf.gii a.func.gii {words}".split()
+            theirs = subprocess.run(["wb_command", *line], check=True, capture_output=True, text=True).stdout
+            ours = self.succeed(*line)
+            texts = [re.sub(r"[\d.]+$", "", text.rstrip(), flags=re.M) for text in (ours, theirs)]
+            self.assertEqual(*texts)
+            numbers = [[float(x) for x in re.findall(r"FWHM: ([\d.]+)", text)] for text in (ours, theirs)]
+            np.testing.assert_allclose(*numbers, rtol=0.05)
+
+
+class Words(WordsTest):
+    def test_what_is_not_allowed_is_one_line(self):
+        for line, message in (
+                ("-surface-curvature a.surf.gii", "-mean and -gauss are missing; allowed: one of them, or both"),
+                ("-surface-geodesic-distance a.surf.gii 20000 o.func.gii", "VERTEX is 20000; allowed: 0 to 10241"),
+                ("-metric-estimate-fwhm a.surf.gii a.func.gii -demean", "-demean without -whole-file"),
+                ("-metric-gradient a.surf.gii a.func.gii o.func.gii -vectors o.func.gii",
+                 "o.func.gii is OUTPUT and -vectors; allowed: different files"),
+                ("-metric-dilate a.func.gii a.surf.gii 10 o.func.gii",
+                 "surfacediffusion inpaint, which fills by harmonic functions"),
+                ("-cifti-estimate-fwhm a.dscalar.nii", "allowed: surfacediffusion fwhm")):
+            code, _, error = run(*line.split())
+            self.assertEqual((code, error.count("\n")), (2, 1), error)
+            self.assertIn(message, error)
+
+    def test_missing_values_have_no_gradient_and_do_not_spread(self):
+        holes = np.where(POINTS[:, 2] > 20, np.nan, self.maps[:, 0])
+        samples.write_gifti("holes.func.gii", {"x": holes})
+        self.succeed("-metric-gradient", "a.surf.gii", "holes.func.gii", "o.func.gii")
+        found = columns("o.func.gii")[:, 0]
+        self.assertTrue(np.isfinite(found[POINTS[:, 2] < 10]).all())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
