@@ -101,6 +101,7 @@
 
 #include <memory> // for the values
 #include <string> // for names
+#include <vector> // for numbers that stand for no value
 
 namespace SurfaceDiffusion
 {
@@ -209,6 +210,19 @@ public:
 
   ///@{
   /**
+   * Numbers that stand for no value, as NaN does, such as -10000 in electroanatomical maps: finite, compared
+   * up to single precision. Values with one of them in any component do not count, in the data and at the
+   * points on port 1. Default: none; a warning asks about known ones that lie far from all other values.
+   * GetMissingValue() gives NaN for an index outside of the list.
+   */
+  void AddMissingValue(double value);
+  void RemoveAllMissingValues();
+  int GetNumberOfMissingValues();
+  double GetMissingValue(int index);
+  ///@}
+
+  ///@{
+  /**
    * Factors of D along and across the direction, above 0. Default: 1. If they differ, input array 2
    * is required.
    */
@@ -258,6 +272,8 @@ protected:
 private:
   vtkSurfaceInterpolationFilter(const vtkSurfaceInterpolationFilter&) = delete;
   void operator=(const vtkSurfaceInterpolationFilter&) = delete;
+
+  std::vector<double>& GetMissingValues();
 
   std::string PointValueArray;
   std::string PointWeightArray;
