@@ -403,7 +403,7 @@ TEST(InterpolationRun, AsksForNumbersThatStandForNoValue)
     missing.MissingValue = { 7.5, sentinel };
     const Solution withMissing = Fitted(s, points, missing);
     EXPECT_TRUE(withMissing.Warnings.empty());
-    EXPECT_EQ(withMissing.U, withNaN.U);
+    EXPECT_EQ(withMissing.Result, withNaN.Result);
     Values f = FieldAt(s);
     f(5, 0) = sentinel;
     const Solution heat = Heat(s.Vertices, s.Faces, f, HeatSettings());

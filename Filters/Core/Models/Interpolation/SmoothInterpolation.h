@@ -145,6 +145,8 @@ private:
   /// The standard error and that of slopes.
   std::pair<Vector, Vector> ErrorOverSmoothing(
     Work& work, Result& result, Eigen::Index column, const ProgressMonitor& progress) const;
+  std::pair<Vector, Vector> ErrorOverFactors(
+    Work& work, Eigen::Index column, const Values& u, const ProgressMonitor& progress) const;
   static Vector FindLeverage(const Work& work, const ProgressMonitor& progress);
   double StartSmoothing(const Work& work) const;
 
