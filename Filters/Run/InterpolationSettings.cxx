@@ -309,11 +309,12 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
                    "The largest distance of points with values from the surface, in the unit of "
                    "the coordinates, 0 or more. Farther ones are counted and left out. 0: any." },
     this->MaximumDistance, SettingRange::NonNegative());
-  visitor.Numbers(
-    { "MissingValue", "values",
-      "Numbers that stand for no value, as NaN does: -10000 in electroanatomical maps, fill values of "
-      "netCDF. They are compared up to single precision, and values with one in any component do not "
-      "count. None: all numbers are values." },
+  visitor.Numbers({ "MissingValue", "values",
+                    "Numbers that stand for no value, as NaN does: -10000 in electroanatomical "
+                    "maps, fill values of "
+                    "netCDF. They are compared up to single precision, and values with one in any "
+                    "component do not "
+                    "count. None: all numbers are values." },
     this->MissingValue, SettingRange::AnyFinite());
   visitor.Number({ "AlongDiffusivity", "",
                    "Factor of the diffusivity along the direction, above 0. If it differs from "

@@ -236,17 +236,19 @@ std::vector<Sentence> AskForSentinels(const Surface& surface, const Fields& fiel
   return warnings;
 }
 
+bool StandsForNoValue(double value, const std::vector<double>& missing)
+{
+  return std::any_of(
+    missing.begin(), missing.end(), [&](double number) { return AreSame(value, number); });
+}
+
 void ReplaceMissingValues(const std::vector<double>& missing, Fields& fields)
 {
   const auto replace = [&](Values& values)
   {
     std::replace_if(
       values.data(), values.data() + values.size(),
-      [&](double value)
-      {
-        return std::any_of(missing.begin(), missing.end(),
-          [&](double number) { return AreSame(value, number); });
-      },
+      [&](double value) { return StandsForNoValue(value, missing); },
       std::numeric_limits<double>::quiet_NaN());
   };
   if (missing.empty())

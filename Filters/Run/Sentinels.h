@@ -21,7 +21,10 @@ Sentence AllowedFactors(const std::string& array);
 std::vector<Sentence> AskForSentinels(const Surface& surface, const Fields& fields,
   const Reduction& processes, const Sentence& aboutData = {});
 
-/// Set NaN in the data and the samples where a number is, up to single precision, one of `missing`.
+/// Whether a number is, up to single precision, one of `missing`.
+bool StandsForNoValue(double value, const std::vector<double>& missing);
+
+/// Set NaN in the data and the samples where a number stands for no value.
 void ReplaceMissingValues(const std::vector<double>& missing, Fields& fields);
 
 } // namespace SurfaceDiffusion

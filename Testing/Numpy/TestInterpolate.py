@@ -233,6 +233,19 @@ class Boundary(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "error is given with smoothing_fwhm or result_on_faces"):
             sd.conduction_velocity(plane, result.values, error=result, smoothing_fwhm=8.0)
         self.assertGreater(speeds["Natural"], 0.7)
+        # The smoothing of many values is not sure either.
+        inside, widths = [], []
+        for seed in range(12):
+            random = np.random.default_rng(seed)
+            angle, places = random.uniform(0.0, 6.3), np.c_[random.uniform(0.0, 60.0, (400, 2)), np.zeros(400)]
+            times = places @ [np.cos(angle), np.sin(angle), 0.0] / 0.6 + random.normal(size=400)
+            result, _ = interpolate(plane, times, places, compute_error=True)
+            found = sd.conduction_velocity(plane, result.values, error=result)
+            inside.append(((found.speed_lower <= 0.6) & (0.6 <= found.speed_upper)).mean())
+            widths.append(np.median(found.speed_upper - found.speed_lower))
+        print(f"400 electrodes: {np.mean(inside):.3f} inside, width {np.mean(widths):.4f}")
+        self.assertGreater(np.mean(inside), 0.87)
+        self.assertLess(np.mean(widths), 0.0155)  # twice those of restricted maximum likelihood
 
     def test_automatic_is_natural_where_free_is_excluded(self):
         half = sd.Surface(BALL.points, BALL.triangles[BALL.points[BALL.triangles, 2].min(axis=1) > 0.0])

@@ -68,7 +68,6 @@ std::pair<Vector, Vector> SmoothInterpolation::ErrorOverFactors(
   constexpr double least = 0.01; // weight beside the largest
   constexpr double pi = 3.14159265358979323846;
   const RepeatedValues& rows = work.Rows;
-  const double fitted = work.Fit.GetSmoothing();
   const auto prepare = [&](double mu)
   {
     const PivotCounts pivots = work.Fit.Prepare(mu, work.None, false, progress);
@@ -76,6 +75,7 @@ std::pair<Vector, Vector> SmoothInterpolation::ErrorOverFactors(
   };
   const double count = rows.Count();
   const double middle = work.TotalWeight * work.Area / std::pow(2.0 * pi * count, 2);
+  const double fitted = work.Fit.GetSmoothing();
   // Only functions without energy are left of the trace.
   if (!prepare(std::min(work.LargestSmoothing(), 1e4 * count * count * middle)))
   {
@@ -121,20 +121,23 @@ std::pair<Vector, Vector> SmoothInterpolation::ErrorOverFactors(
     const Vector diagonal = work.Fit.InverseDiagonal(progress, &edges);
     const Values step = other - u;
     sum += weight;
-    squares += factor *
-        (diagonal.cwiseMax(0.0) + this->VarianceOfMean(work, work.None, false, progress)) +
+    squares +=
+      factor * (diagonal.cwiseMax(0.0) + this->VarianceOfMean(work, work.None, false, progress)) +
       weight * step.col(0).cwiseAbs2();
-    ofSlopes += factor * slopes.OfCovariance(diagonal, edges) +
-      slopes.Of(step, Vector::Constant(1, weight));
+    ofSlopes +=
+      factor * slopes.OfCovariance(diagonal, edges) + slopes.Of(step, Vector::Constant(1, weight));
     return weight > least * width;
   };
+  const double reach = std::exp(SmoothingPosterior::Farthest);
+  const double begin =
+    std::min({ std::max(fitted, middle / reach), middle * reach, work.LargestSmoothing() });
   for (const double way : { 1.0, -1.0 })
   {
     for (std::size_t k = way > 0.0 ? 0 : 1; k + 1 < steps.size(); ++k)
     {
-      const double mu = fitted * std::exp(way * steps[k]);
-      const bool isIn = std::abs(std::log(mu / middle)) <= SmoothingPosterior::Farthest &&
-        mu <= work.LargestSmoothing();
+      const double mu = begin * std::exp(way * steps[k]);
+      const bool isIn =
+        mu >= middle / reach && mu <= middle * reach && mu <= work.LargestSmoothing();
       const double width = 0.5 * (steps[k + 1] - (k > 0 ? steps[k - 1] : -1.0));
       if (k > 0 && (!isIn || !add(mu, width)))
       {
