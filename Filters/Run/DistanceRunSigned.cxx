@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -129,12 +130,26 @@ std::vector<double> SmoothRegion(const TriangleMesh& mesh, const std::vector<cha
     }
     return found;
   };
+  // At open ends u may have any slope: a neighbour that comes once is there.
+  std::vector<Index> ends;
+  std::copy_if(band.begin(), band.end(), std::back_inserter(ends),
+    [&](Index v)
+    {
+      std::size_t odd = 0; // all that come twice leave no bit
+      ForEachNeighbour(mesh, v, [&](std::size_t w) { odd ^= w + 1; });
+      return odd != 0;
+    });
   std::vector<double> u = distances;
   std::vector<double> ahead = u;
   double momentum = 1.0;
   for (int iteration = 0; iteration < iterations; ++iteration)
   {
-    const std::vector<double> slope = differences(differences(ahead));
+    std::vector<double> bend = differences(ahead);
+    for (const Index v : ends)
+    {
+      bend[static_cast<std::size_t>(v)] = 0.0;
+    }
+    const std::vector<double> slope = differences(bend);
     const double next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
     for (const Index vertex : band)
     {

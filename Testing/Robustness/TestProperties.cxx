@@ -38,6 +38,7 @@ const std::set<std::string> WithoutEffectInClass = {
   "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
   "vtkSurfaceInterpolationFilter MaximumDistance", // of points on the second input
   "vtkSurfaceDistanceFilter MaximumDistance", // likewise
+  "vtkSurfaceInterpolationFilter MissingValue", // which no value is
   "vtkSurfaceInterpolationFilter PointValueArray", "vtkSurfaceInterpolationFilter PointWeightArray",
   "vtkSurfaceInterpolationFilter RandomSeed", // of more values than the surface has
 };

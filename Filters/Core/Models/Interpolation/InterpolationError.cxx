@@ -68,11 +68,16 @@ std::pair<Vector, Vector> SmoothInterpolation::ErrorOverFactors(
   constexpr double least = 0.01; // weight beside the largest
   constexpr double pi = 3.14159265358979323846;
   const RepeatedValues& rows = work.Rows;
+  double done = 0.0; // of at most 20 factors
   const auto prepare = [&](double mu)
   {
-    const PivotCounts pivots = work.Fit.Prepare(mu, work.None, false, progress);
+    done = std::min(done + 0.05, 0.95);
+    const PivotCounts pivots =
+      work.Fit.Prepare(mu, work.None, false, progress.Part(done - 0.05, done - 0.02));
     return pivots.Open + pivots.Negative == 0;
   };
+  const auto rest = [&](double from, double to)
+  { return progress.Part(done - 0.02 + 0.02 * from, done - 0.02 + 0.02 * to); };
   const double count = rows.Count();
   const double middle = work.TotalWeight * work.Area / std::pow(2.0 * pi * count, 2);
   const double fitted = work.Fit.GetSmoothing();
@@ -82,7 +87,7 @@ std::pair<Vector, Vector> SmoothInterpolation::ErrorOverFactors(
     return {};
   }
   const double free =
-    std::round(rows.Weights.cwiseProduct(work.Fit.VarianceAtPoints(progress)).sum());
+    std::round(rows.Weights.cwiseProduct(work.Fit.VarianceAtPoints(rest(0.0, 1.0))).sum());
   const double freedom = count - free + rows.Repeats.sum();
   const double student = this->Options.NoiseLevel > 0.0 ? 1.0 : StudentFactor(freedom);
   const SlopeSquares slopes(this->Assembly->Mesh(), this->Parallel);
@@ -118,11 +123,11 @@ std::pair<Vector, Vector> SmoothInterpolation::ErrorOverFactors(
     const double variance = noise > 0.0 ? noise * noise : misfit / freedom;
     const double factor = weight * student * student * variance;
     std::vector<InverseEntry> edges = slopes.Edges();
-    const Vector diagonal = work.Fit.InverseDiagonal(progress, &edges);
+    const Vector diagonal = work.Fit.InverseDiagonal(rest(0.0, 0.8), &edges);
     const Values step = other - u;
     sum += weight;
-    squares +=
-      factor * (diagonal.cwiseMax(0.0) + this->VarianceOfMean(work, work.None, false, progress)) +
+    squares += factor *
+        (diagonal.cwiseMax(0.0) + this->VarianceOfMean(work, work.None, false, rest(0.8, 1.0))) +
       weight * step.col(0).cwiseAbs2();
     ofSlopes +=
       factor * slopes.OfCovariance(diagonal, edges) + slopes.Of(step, Vector::Constant(1, weight));
