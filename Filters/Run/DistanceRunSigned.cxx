@@ -74,7 +74,7 @@ void ForEachNeighbour(const TriangleMesh& mesh, Index v, const Use& use)
 /// with the difference L u from the mean of the neighbours and the distance d in edges, 1/2 at the ends of those
 /// that leave the region and at most 6, by accelerated projected gradients (A. Beck, M. Teboulle, SIAM J.
 /// Imaging Sci. 2, 2009). The middle of each edge that leaves the region is 2 % of the largest distance off on a
-/// sphere of 642 vertices, and this boundary 0.6 %.
+/// sphere of 642 vertices, and this boundary 0.7 %.
 std::vector<double> SmoothRegion(const TriangleMesh& mesh, const std::vector<char>& inside)
 {
   constexpr double farthest = 6.0;
