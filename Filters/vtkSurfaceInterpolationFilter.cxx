@@ -13,6 +13,9 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 
+#include <limits>
+#include <vector>
+
 using namespace SurfaceDiffusion;
 
 VTK_ABI_NAMESPACE_BEGIN
@@ -27,6 +30,38 @@ vtkSurfaceInterpolationFilter::vtkSurfaceInterpolationFilter()
   this->DeclareNumber("MedianDistance");
   this->DeclareNumber("LargestDistance");
   this->SetNumberOfInputPorts(2);
+}
+
+void vtkSurfaceInterpolationFilter::AddMissingValue(double value)
+{
+  this->GetMissingValues().push_back(value);
+  this->Modified();
+}
+
+void vtkSurfaceInterpolationFilter::RemoveAllMissingValues()
+{
+  if (!this->GetMissingValues().empty())
+  {
+    this->GetMissingValues().clear();
+    this->Modified();
+  }
+}
+
+int vtkSurfaceInterpolationFilter::GetNumberOfMissingValues()
+{
+  return static_cast<int>(this->GetMissingValues().size());
+}
+
+double vtkSurfaceInterpolationFilter::GetMissingValue(int index)
+{
+  const bool isIn = index >= 0 && index < this->GetNumberOfMissingValues();
+  return isIn ? this->GetMissingValues()[static_cast<std::size_t>(index)]
+              : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<double>& vtkSurfaceInterpolationFilter::GetMissingValues()
+{
+  return static_cast<InterpolationSettings&>(this->GetSettings()).MissingValue;
 }
 
 int vtkSurfaceInterpolationFilter::FillInputPortInformation(int port, vtkInformation* info)

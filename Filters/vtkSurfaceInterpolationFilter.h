@@ -62,9 +62,10 @@
  * a band of 1.645 of them on each side holds 90 %. It is infinite where the values leave the slope
  * open, as one or two and those on a line do on flat pieces with Free. s is NoiseLevel, or estimated
  * from the misfit and from repeats at one place; NaN if the values leave none. With an estimated s the
- * standard deviation is multiplied by Student's quantile over the normal one. With up to 300 values and
- * AutomaticSmoothing it is the root of the mean square of the error over the posterior distribution of
- * mu, whose prior is uniform in the share of noise (M. Daniels, Canad. J. Statist. 27, 1999). Fields that
+ * standard deviation is multiplied by Student's quantile over the normal one. With AutomaticSmoothing it
+ * is the root of the mean square of the error over the posterior distribution of mu, whose prior is the
+ * half-Cauchy distribution of mu^(-1/4), the wave number beyond which u is smoothed (A. Gelman, Bayesian
+ * Anal. 1, 2006). Fields that
  * are smoother than splines are covered by more. Correlated noise is taken for signal; a warning reports
  * values without white noise. With CorrelationLength the error of the mean m is added,
  * (1 - a_i)^2 Var(m), where a is the fit of
@@ -101,6 +102,7 @@
 
 #include <memory> // for the values
 #include <string> // for names
+#include <vector> // for numbers that stand for no value
 
 namespace SurfaceDiffusion
 {
@@ -209,6 +211,19 @@ public:
 
   ///@{
   /**
+   * Numbers that stand for no value, as NaN does, such as -10000 in electroanatomical maps: finite, compared
+   * up to single precision. Values with one of them in any component do not count, in the data and at the
+   * points on port 1. Default: none; a warning asks about known ones that lie far from all other values.
+   * GetMissingValue() gives NaN for an index outside of the list.
+   */
+  void AddMissingValue(double value);
+  void RemoveAllMissingValues();
+  int GetNumberOfMissingValues();
+  double GetMissingValue(int index);
+  ///@}
+
+  ///@{
+  /**
    * Factors of D along and across the direction, above 0. Default: 1. If they differ, input array 2
    * is required.
    */
@@ -258,6 +273,8 @@ protected:
 private:
   vtkSurfaceInterpolationFilter(const vtkSurfaceInterpolationFilter&) = delete;
   void operator=(const vtkSurfaceInterpolationFilter&) = delete;
+
+  std::vector<double>& GetMissingValues();
 
   std::string PointValueArray;
   std::string PointWeightArray;

@@ -187,6 +187,22 @@ void WarnOfOutliers(const InterpolationSettings& settings, const InterpolationMo
   }
 }
 
+/// The rows of the data whose values count, in one column at least.
+Output FindUsedRows(const FitOfKnownValues& model)
+{
+  Values used(static_cast<Eigen::Index>(model.Rows.size()), 1);
+  Eigen::Index count = 0;
+  for (std::size_t i = 0; i < model.Rows.size(); ++i)
+  {
+    if (model.Outliers().row(static_cast<Eigen::Index>(i)).minCoeff() == 0.0)
+    {
+      used(count++, 0) = static_cast<double>(model.Rows[i]);
+    }
+  }
+  used.conservativeResize(count, 1);
+  return { "UsedRows", Place::Number, OutputType::Integer, std::move(used) };
+}
+
 /// The residuals, which values were left out, and what the result without each of them is.
 void AddOfValues(const InterpolationSettings& settings, const FitOfKnownValues& model,
   const Values& residuals, double unit, std::vector<Output>& outputs)
@@ -293,6 +309,13 @@ void InterpolationSettings::Visit(SettingVisitor& visitor)
                    "The largest distance of points with values from the surface, in the unit of "
                    "the coordinates, 0 or more. Farther ones are counted and left out. 0: any." },
     this->MaximumDistance, SettingRange::NonNegative());
+  visitor.Numbers({ "MissingValue", "values",
+                    "Numbers that stand for no value, as NaN does: -10000 in electroanatomical "
+                    "maps, fill values of "
+                    "netCDF. They are compared up to single precision, and values with one in any "
+                    "component do not "
+                    "count. None: all numbers are values." },
+    this->MissingValue, SettingRange::AnyFinite());
   visitor.Number({ "AlongDiffusivity", "",
                    "Factor of the diffusivity along the direction, above 0. If it differs from "
                    "AcrossDiffusivity, DirectionArray is required.",
@@ -341,6 +364,7 @@ ModelTraits InterpolationSettings::DescribeModel() const
   traits.UsesFidelity = true;
   traits.UsesKnownValues = true;
   traits.MaximumDistance = this->MaximumDistance;
+  traits.MissingValues = this->MissingValue;
   traits.NeedsDirections = this->IsDirected();
   traits.StartsFromKnownValues = true;
   traits.ResultOnCells = this->ResultOnCells;
@@ -456,6 +480,7 @@ std::vector<Output> InterpolationSettings::Finish(const RunState& state, RunResu
     WarnOfOutliers(*this, model, residuals, result);
     AddOfValues(*this, model, residuals, unit, outputs);
   }
+  outputs.push_back(FindUsedRows(model));
   const auto columns = static_cast<Eigen::Index>(found.Columns.size());
   Values rows(columns, 6);
   const double ofSmoothing = 1.0 / state.Units.ToCore(1.0, 2.0, 0.0);

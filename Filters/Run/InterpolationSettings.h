@@ -22,6 +22,7 @@ struct InterpolationSettings : RunSettings
   bool LeaveOneOut = false;
   RimCondition Boundary = RimCondition::Automatic;
   double MaximumDistance = 0.0;
+  std::vector<double> MissingValue;
   double AlongDiffusivity = 1.0;
   double AcrossDiffusivity = 1.0;
   bool ResultOnCells = true;

@@ -116,6 +116,7 @@ OutputRows::OutputRows(const Output& output, const OutputSource& source)
   {
     this->GivenColumn = this->IsOnCells == (cells != nullptr) ? output.Given : -1;
     this->HoldsNaN = source.DataAreFloats;
+    this->MissingValues = source.Traits.MissingValues;
   }
 }
 

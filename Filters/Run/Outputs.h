@@ -6,6 +6,7 @@
 #include "Run/ConvertValue.h"
 #include "Run/Output.h"
 #include "Run/Run.h"
+#include "Run/Sentinels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -120,7 +121,10 @@ private:
     }
     if (this->GivenColumn >= 0)
     {
-      return given(i, this->GivenColumn + k);
+      const double value = given(i, this->GivenColumn + k);
+      return this->HoldsNaN && StandsForNoValue(value, this->MissingValues)
+        ? std::numeric_limits<double>::quiet_NaN()
+        : value;
     }
     if (k >= this->NumberOfColumns)
     {
@@ -140,6 +144,7 @@ private:
   Eigen::Index FirstColumn = 0;
   double Unit = 1.0;
   Eigen::Index GivenColumn = -1;
+  std::vector<double> MissingValues; ///< of the data
   bool IsOnCells = false;
   bool HoldsNaN = false;
   bool MayBeInfinite = false;

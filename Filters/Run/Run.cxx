@@ -115,11 +115,12 @@ void Run::ReadFields(const BlockInput& input, const Reduction& processes, Block&
   std::unique_ptr<Fields>& fields, const ProgressMonitor& progress)
 {
   RunCollectively(processes, [&] { fields = std::make_unique<Fields>(input.ReadFields()); });
+  const ModelTraits traits = this->Settings->DescribeModel();
+  ReplaceMissingValues(traits.MissingValues, *fields);
   if (fields->Samples)
   {
-    ProjectSamples(input.ReadSurface(), this->Settings->DescribeModel().MaximumDistance, *fields);
+    ProjectSamples(input.ReadSurface(), traits.MaximumDistance, *fields);
   }
-  const ModelTraits traits = this->Settings->DescribeModel();
   block.HasLinearLight = fields->DataAreBytes && traits.UsesLinearLight;
   block.Period = traits.Period;
   const Values angles = traits.Period > 0.0 ? fields->Data.Values : Values();
@@ -302,7 +303,10 @@ void Run::MakeModel(
       this->Settings->MaskMode == MaskMode::Inpaint, block.Units.ValueUnit, traits.MaximumDistance);
   }
   progress.Report(0.2);
-  for (const Sentence& warning : AskForSentinels(*block.Surface, fields, processes))
+  const Sentence aboutData = traits.UsesKnownValues
+    ? Sentence("if it stands for no value, give it as ") << Word::Setting("MissingValue")
+    : Sentence();
+  for (const Sentence& warning : AskForSentinels(*block.Surface, fields, processes, aboutData))
   {
     block.Result.WarnOnce(warning);
   }

@@ -102,6 +102,7 @@ struct ModelTraits
   bool UsesKnownValues = false; ///< see KnownValues; the data may be samples
   bool EstimatesNoise = false; ///< needs PointData::Measured
   double MaximumDistance = 0.0; ///< of samples from the surface; 0: any
+  std::vector<double> MissingValues = {}; ///< stand for NaN in data and samples
   bool NeedsDirections = false; ///< diffusivities along and across differ
   bool HoldsKnownValues = false;
   /// No column of the state depends on other ones or on their number, given the missing points.

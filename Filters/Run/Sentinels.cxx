@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <utility>
 
 namespace SurfaceDiffusion
@@ -23,15 +25,20 @@ constexpr std::array<double, 10> Known = { -999.0, -9999.0, -99999.0, -10000.0, 
   1e20, 1e30, 9.969209968386869e36, 1.70141e38 };
 constexpr double Least = 999.0; ///< magnitude of all
 
-/// The number of the sentinel that a value is up to single precision, with any sign of the large ones.
-std::size_t SentinelOf(double value)
+/// Up to single precision, and to the six digits that tables have of it.
+bool AreSame(double value, double number)
 {
   constexpr double roundOff = 1e-6;
+  return std::abs(value - number) <= roundOff * std::abs(number);
+}
+
+/// The number of the sentinel that a value is, with any sign of the large ones.
+std::size_t SentinelOf(double value)
+{
   constexpr double large = 1e19;
   const double size = std::abs(value);
   std::size_t k = size >= Least ? 0 : Known.size(); // none of NaN
-  while (k < Known.size() &&
-    std::abs((size > large ? size : value) - Known[k]) > roundOff * std::abs(Known[k]))
+  while (k < Known.size() && !AreSame(size > large ? size : value, Known[k]))
   {
     ++k;
   }
@@ -117,7 +124,8 @@ std::vector<Asked> ListNumbers(
     std::vector<char> counts = all(static_cast<std::size_t>(samples->Given.rows()));
     std::transform(samples->Weights.begin(), samples->Weights.end(), counts.begin(),
       [](double weight) { return weight != 0.0; });
-    list.push_back({ "the points", AboutNoValue(""), Map(samples->Given), std::move(counts) });
+    list.push_back({ "the points", aboutData.Words().empty() ? AboutNoValue("") : aboutData,
+      Map(samples->Given), std::move(counts) });
     add("FidelityArray", Map(samples->Weights), all(samples->Weights.size()));
   }
   else
@@ -226,6 +234,34 @@ std::vector<Sentence> AskForSentinels(const Surface& surface, const Fields& fiel
     Ask(array, processes, warnings);
   }
   return warnings;
+}
+
+bool StandsForNoValue(double value, const std::vector<double>& missing)
+{
+  return std::any_of(
+    missing.begin(), missing.end(), [&](double number) { return AreSame(value, number); });
+}
+
+void ReplaceMissingValues(const std::vector<double>& missing, Fields& fields)
+{
+  const auto replace = [&](Values& values)
+  {
+    std::replace_if(
+      values.data(), values.data() + values.size(),
+      [&](double value) { return StandsForNoValue(value, missing); },
+      std::numeric_limits<double>::quiet_NaN());
+  };
+  if (missing.empty())
+  {
+    return;
+  }
+  replace(fields.Data.Values);
+  if (fields.Samples)
+  {
+    auto samples = std::make_shared<PointSamples>(*fields.Samples);
+    replace(samples->Given);
+    fields.Samples = std::move(samples);
+  }
 }
 
 } // namespace SurfaceDiffusion

@@ -16,8 +16,15 @@ Sentence AllowedFactors(const std::string& array);
 
 /// A warning for each number that programs write where they have no value, such as -9999 or the fill
 /// value of netCDF, 9.969e36, that an array of numbers has farther from all others that count than
-/// half of their range: are they values? Collective. aboutData: in place of AboutNoValue() of data.
+/// half of their range: are they values? Collective. aboutData: in place of AboutNoValue() of data and of
+/// samples.
 std::vector<Sentence> AskForSentinels(const Surface& surface, const Fields& fields,
   const Reduction& processes, const Sentence& aboutData = {});
+
+/// Whether a number is, up to single precision, one of `missing`.
+bool StandsForNoValue(double value, const std::vector<double>& missing);
+
+/// Set NaN in the data and the samples where a number stands for no value.
+void ReplaceMissingValues(const std::vector<double>& missing, Fields& fields);
 
 } // namespace SurfaceDiffusion

@@ -733,18 +733,6 @@ def segment(
     return _find("segment", SegmentationResult, given, properties, progress)
 
 
-def _places_of_values(surface: Surface, values: Any, points: Any, on_faces: bool | None) -> Any:
-    """Where values are known, as sources of a distance: coordinates, flags of points, or middles of faces."""
-    array = np.asarray(values)
-    known = ~np.isnan(array.reshape(len(array), -1)).any(axis=1) if array.dtype.kind == "f" else (
-        np.ones(len(array), dtype=bool))
-    if points is not None:
-        return np.asarray(points, dtype=np.float64)[known]
-    if not on_faces:
-        return known
-    return np.array([surface.points[face].mean(axis=0) for face, is_known in zip(surface.faces, known) if is_known])
-
-
 @_with_settings
 def interpolate(
     surface: SurfaceLike,
@@ -815,11 +803,14 @@ def interpolate(
         given = Input(surface, mask=mask, directions=directions,
                       samples=as_samples(points, values, fidelity))
     result = _find("interpolate", InterpolationResult, given, properties, progress)
+    used = np.array(surface._runs["interpolate"].numbers()["UsedRows"], dtype=np.int64).ravel()
+    places = np.asarray(points, dtype=np.float64)[used] if points is not None else used if not on_faces else (
+        np.array([surface.points[surface.faces[row]].mean(axis=0) for row in used]))
     shape = (-1,) if np.ndim(values) == 1 else (len(result.values), -1)
     return replace(result, values=result.values.reshape(shape),
                    error=result.error.reshape(shape) if result.error.size else result.error,
                    slope_error=result.slope_error.reshape(shape) if result.slope_error.size else result.slope_error,
-                   outliers=result.outliers != 0, _places=(surface, _places_of_values(surface, values, points, on_faces)))
+                   outliers=result.outliers != 0, _places=(surface, places))
 
 
 @_with_settings

@@ -450,8 +450,8 @@ class InterpolationResult(ModelResult):
         With ``leave_one_out=True`` the pair of the residuals of the results without each value, at the same
         mu, and of their standard errors, NaN for outliers.
     distance_to_data : ndarray, shape (n,)
-        The distance of each point along the surface from the nearest value, see :func:`distance`; found when
-        it is asked for.
+        The distance of each point along the surface from the nearest value that was used, see
+        :func:`distance`; found when it is asked for.
     number_of_values : int
         The values that were used.
     number_of_far_values : int

@@ -83,6 +83,8 @@ class SameBits(unittest.TestCase):
         of_faces, inner = random.normal(size=s.n_faces), np.arange(s.n_faces) < s.n_faces // 2
         np.save("f.npy", of_faces)
         np.save("inner.npy", inner.astype(float))
+        np.save("inner-points.npy", 1.0 * (x > 2))
+        np.save("filled.npy", np.where(np.isnan(sparse), np.where(x > 0, -9999, 1e20), sparse))
         np.save("b.off.npy", np.where(sphere(2, 30.0)[0] > 0, 1.0, 0.0))
         masked = {"mask": outside, "mask_mode": "Exclude"}
         inside = np.where(outside[:, None], 0, values)
@@ -111,6 +113,8 @@ class SameBits(unittest.TestCase):
             ("inpaint a.off few.npy out.npy --model tv",
              sd.intrinsic_tv(s, sparse, mode="SteadyState", hold_known_values=True)),
             ("interpolate a.off few.npy out.npy --smoothing 0.01", sd.interpolate(s, sparse, smoothing=0.01)),
+            ("interpolate a.off filled.npy out.npy --missing-value -9999 --missing-value 1e20",
+             sd.interpolate(s, sparse)),
             ("enhance a.off v.npy out.npy --model lines --time 4 --steps 4",
              each(sd.tensor_diffusion, s, model="CoherenceEnhancing", time_step=1.0, number_of_time_steps=4)),
             ("edges a.off v.npy out.npy --threshold 1 --length 4",
@@ -130,6 +134,10 @@ class SameBits(unittest.TestCase):
             *((f"distance a.off marks.npy out.npy --method {method}",
                sd.distance(s, np.flatnonzero(np.load("marks.npy")), method=method))
               for method in ("exact", "eikonal", "heat")),
+            ("distance b.off b.off.npy out.npy --signed", columns(
+                *[sd.distance(ball, ball.points[:, k] > 0, signed=True) for k in range(3)])),
+            ("distance a.off inner-points.npy out.npy --signed --method eikonal",
+             sd.distance(s, x > 2, signed=True, method="eikonal")),
             ("normals a.off out.npy --time-step 2", sd.harmonic_map(s, time_step=2, exponent=1.0)),
             ("random-field a.off out.npy --fwhm 6 --count 3 --seed 5", sd.random_field(s, 3, fwhm=6, seed=5)),
             ("random-field a.off out.npy --range 9 --nu 3", sd.random_field(s, range=9, nu=3)),

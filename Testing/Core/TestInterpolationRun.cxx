@@ -394,7 +394,16 @@ TEST(InterpolationRun, AsksForNumbersThatStandForNoValue)
     samples = std::make_shared<PointSamples>(*samples);
     samples->Given(3, 0) = samples->Given(17, 0) = NaN;
     points.Samples = samples;
-    EXPECT_TRUE(Fitted(s, points, Exact()).Warnings.empty());
+    const Solution withNaN = Fitted(s, points, Exact());
+    EXPECT_TRUE(withNaN.Warnings.empty());
+    samples = std::make_shared<PointSamples>(*samples);
+    samples->Given(3, 0) = samples->Given(17, 0) = sentinel;
+    points.Samples = samples;
+    InterpolationSettings missing = Exact();
+    missing.MissingValue = { 7.5, sentinel };
+    const Solution withMissing = Fitted(s, points, missing);
+    EXPECT_TRUE(withMissing.Warnings.empty());
+    EXPECT_EQ(withMissing.Result, withNaN.Result);
     Values f = FieldAt(s);
     f(5, 0) = sentinel;
     const Solution heat = Heat(s.Vertices, s.Faces, f, HeatSettings());

@@ -141,7 +141,7 @@ class TestCode(unittest.TestCase):
 
     def test_tutorials_run(self):
         tutorials = sorted((FOLDER / "tutorials").glob("plot_*.py"))
-        self.assertEqual(len(tutorials), 8)
+        self.assertEqual(len(tutorials), 9)
         for tutorial in tutorials:
             with self.subTest(tutorial.name):
                 runpy.run_path(str(tutorial), run_name="__main__")

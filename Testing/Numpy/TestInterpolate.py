@@ -144,10 +144,66 @@ class WrongValues(unittest.TestCase):
         cells = sd.interpolate(BALL, np.where(np.arange(M) % 7 == 0, 1.0 + np.arange(M) % 2, np.nan), leave_one_out=True)
         self.assertEqual(cells.leave_one_out.residuals.shape, (M,))
 
-    def test_distance_to_data_is_that_from_the_values(self):
-        places = places_around(20)
-        result = sd.interpolate(BALL, field(places), places)
+    def test_distance_to_data_is_that_from_the_values_that_were_used(self):
+        places = places_around(40)
+        values = field(places)
+        result = sd.interpolate(BALL, values, places)
         np.testing.assert_array_equal(result.distance_to_data, sd.distance(BALL, places))
+        far = np.arange(40) % 3 == 1
+        weights = 1.0 - (np.arange(40) % 3 == 2)
+        result, _ = interpolate(BALL, values, places * (1.0 + far)[:, None], fidelity=weights, maximum_distance=0.5)
+        np.testing.assert_array_equal(result.distance_to_data, sd.distance(BALL, places[::3]))
+        spoiled = values + 2.0 * (np.arange(40) == 17)
+        result, _ = interpolate(BALL, spoiled, places, robust=True)
+        self.assertEqual(np.flatnonzero(result.outliers).tolist(), [17])
+        np.testing.assert_array_equal(result.distance_to_data, sd.distance(BALL, np.delete(places, 17, axis=0)))
+        # Of values at points and on faces, where a mask and a weight leave some out.
+        of_points = sparse(5)
+        known = np.flatnonzero(~np.isnan(of_points))
+        result = sd.interpolate(BALL, of_points, mask=np.arange(N) == known[0],
+                                fidelity=1.0 - (np.arange(N) == known[1]))
+        np.testing.assert_array_equal(result.distance_to_data, sd.distance(BALL, known[2:]))
+        of_faces = np.where(np.arange(M) % 7 == 0, 1.0 + np.arange(M) % 2, np.nan)
+        result, _ = interpolate(BALL, of_faces, fidelity=1.0 * (np.arange(M) % 14 == 0))
+        np.testing.assert_array_equal(
+            result.distance_to_data, sd.distance(BALL, BALL.points[BALL.triangles[::14]].mean(axis=1)))
+
+
+class MissingValues(unittest.TestCase):
+    def test_numbers_that_stand_for_no_value_do_not_count(self):
+        places = places_around(40)
+        values = np.column_stack([field(places), 2.0 * field(places)])
+        gone = np.isin(np.arange(40), (3, 17))
+        expected, said = interpolate(BALL, values[~gone], places[~gone])
+        for numbers in (-10000, [-10000.0], [-999, -10000], np.float32(-10000.1)):
+            spoiled = values.copy()
+            spoiled[3, 0], spoiled[17, 1] = np.ravel(numbers)[-1], np.float32(np.ravel(numbers)[-1])
+            result, found = interpolate(BALL, spoiled, places, missing_value=numbers)
+            self.assertEqual(found, said)
+            self.assertEqual(result.number_of_values, 38)
+            np.testing.assert_array_equal(result.values, expected.values)
+        spoiled[3, 0] = -10000.0
+        _, found = interpolate(BALL, spoiled[:, 0], places)
+        self.assertIn("1 value of the points is -10000, far from all others, and taken for measured "
+                      "(if it stands for no value, give it as missing_value)", found[0])
+
+    def test_of_the_data_too_and_zero_is_one(self):
+        data = sparse(9)
+        plain, said = interpolate(BALL, data)
+        for number in (0.0, 1e30, -9999.0):
+            result, found = interpolate(BALL, np.where(np.isnan(data), number, data), missing_value=number)
+            np.testing.assert_array_equal(result.values, plain.values)
+            self.assertEqual(found, said)
+        counts = np.where(np.isnan(data), -9999, np.rint(100 * data)).astype(np.int32)
+        np.testing.assert_array_equal(sd.interpolate(BALL, counts, missing_value=-9999).values,
+                                      sd.interpolate(BALL, np.where(counts == -9999, np.nan, counts)).values)
+
+    def test_errors_name_what_is_allowed(self):
+        for wrong in (np.inf, "none", [np.nan]):
+            with self.assertRaisesRegex(ValueError, "^missing_value is .*; allowed: finite numbers$"):
+                sd.interpolate(BALL, sparse(9), missing_value=wrong)
+        with self.assertRaisesRegex(ValueError, "has no known value"):
+            sd.interpolate(BALL, np.full(N, -1.0), missing_value=-1.0)
 
 
 class Boundary(unittest.TestCase):
@@ -177,6 +233,19 @@ class Boundary(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "error is given with smoothing_fwhm or result_on_faces"):
             sd.conduction_velocity(plane, result.values, error=result, smoothing_fwhm=8.0)
         self.assertGreater(speeds["Natural"], 0.7)
+        # The smoothing of many values is not sure either.
+        inside, widths = [], []
+        for seed in range(12):
+            random = np.random.default_rng(seed)
+            angle, places = random.uniform(0.0, 6.3), np.c_[random.uniform(0.0, 60.0, (400, 2)), np.zeros(400)]
+            times = places @ [np.cos(angle), np.sin(angle), 0.0] / 0.6 + random.normal(size=400)
+            result, _ = interpolate(plane, times, places, compute_error=True)
+            found = sd.conduction_velocity(plane, result.values, error=result)
+            inside.append(((found.speed_lower <= 0.6) & (0.6 <= found.speed_upper)).mean())
+            widths.append(np.median(found.speed_upper - found.speed_lower))
+        print(f"400 electrodes: {np.mean(inside):.3f} inside, width {np.mean(widths):.4f}")
+        self.assertGreater(np.mean(inside), 0.87)
+        self.assertLess(np.mean(widths), 0.018)  # at most twice those of restricted maximum likelihood
 
     def test_automatic_is_natural_where_free_is_excluded(self):
         half = sd.Surface(BALL.points, BALL.triangles[BALL.points[BALL.triangles, 2].min(axis=1) > 0.0])

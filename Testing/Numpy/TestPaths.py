@@ -184,6 +184,17 @@ class SignedDistances(unittest.TestCase):
             found = sd.distance(self.ball, inside, signed=True, method=method)
             np.testing.assert_array_equal(found < 0, inside)
             self.assert_near(found, 0.4 - self.latitude, 0.007, 0.03)
+        coarse = sd.sphere(3)  # 642 points
+        errors = []
+        for seed in range(20):
+            random = np.random.default_rng(seed)
+            axis, least = random.normal(size=3), random.uniform(-0.9, 0.9)
+            latitude = np.arcsin(np.clip(coarse.points @ axis / np.linalg.norm(axis), -1, 1))
+            found = sd.distance(coarse, latitude > least, signed=True)
+            errors.append(np.abs(found - (least - latitude)) / np.abs(least - latitude).max())
+        print(f"642 points: mean {np.mean(errors):.4f}, largest {np.max(errors):.4f}")
+        self.assertLess(np.mean(errors), 0.01)
+        self.assertLess(np.max(errors), 0.03)
         nearest = sd.nearest_sources(self.ball, np.flatnonzero(inside), signed=True)
         self.assertTrue(((0 <= nearest.source) & (nearest.source < inside.sum())).all())
         near = np.linalg.norm(self.ball.points - self.ball.points[inside][nearest.source], axis=1)

@@ -51,6 +51,9 @@ def run(name, properties, indices, arrays):
     for key, value in properties.items():
         if isinstance(value, str):
             getattr(algorithm, f"Set{key}To{value}")()
+        elif isinstance(value, list):
+            for each in value:
+                getattr(algorithm, f"Add{key}")(each)
         else:
             getattr(algorithm, f"Set{key}")(value)
     algorithm.SetInputData(polydata)

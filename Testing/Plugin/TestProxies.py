@@ -21,6 +21,7 @@ NOT_CXX_PROPERTIES = {
     "FidelityArray", "SeedArray", "CreaseArray", "DataTermArray", "PointsWithValues", "TimestepValues",
     "Sources", "PathPoints", "SourceArray", "SpeedArray", "SourceTimes",
     "Mean",  # a list: SetMean(region, component, value)
+    "MissingValue",  # a list: AddMissingValue(value)
 }
 PORTS = {"SurfaceSegmentationFilter": ["Surface", "Regions", "Boundaries"],
          "SurfaceInterpolationFilter": ["Surface", "Fit"], "SurfaceDistanceFilter": ["Surface", "Paths"]}

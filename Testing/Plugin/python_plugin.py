@@ -278,7 +278,7 @@ def run_kinds_of_input():
         run(name, typed(np.uint8), "single", OutputPrecision=0, ResultArrayName="mine", **colors)
     points = producer(scattered())
     run("SurfaceInterpolationFilter", sphere_with_arrays(), "samples", PointsWithValues=points,
-        ComputeError=1)
+        ComputeError=1, MissingValue=[-9999.0, 1e30])
     for method in ("Heat", "Eikonal", "Exact"):
         run("SurfaceDistanceFilter", sphere_with_arrays(), "sources" + method, Sources=points, Method=method,
             ComputeGradient=1, PathPoints=producer(scattered()))

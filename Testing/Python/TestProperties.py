@@ -226,7 +226,8 @@ class Properties(unittest.TestCase):
             for name in printed[printed.index("Debug"):]:
                 with self.subTest(cls=cls.__name__, setting=name):
                     self.assertTrue(hasattr(cls, "Get" + name) or name in {
-                        "Debug", "Observers", "Executive", "Information", "Means"})
+                        "Debug", "Observers", "Executive", "Information", "Means",
+                        "MissingValue"})
 
 
 if __name__ == "__main__":

@@ -283,6 +283,28 @@ inline List OfInterpolation()
     RANDOM_PROPERTY(F, LeaveOneOut, dice.Flip(4)),
     RANDOM_PROPERTY(F, Boundary, Choice(dice, 3)),
     RANDOM_PROPERTY(F, MaximumDistance, ZeroOrPositive(dice)),
+    { "MissingValue",
+      [](vtkPolyDataAlgorithm* filter, Dice& dice)
+      { static_cast<F*>(filter)->AddMissingValue(dice.Flip() ? 0.0 : -9999.0); },
+      [](vtkPolyDataAlgorithm* from, vtkPolyDataAlgorithm* to)
+      {
+        static_cast<F*>(to)->RemoveAllMissingValues();
+        for (int k = 0; k < static_cast<F*>(from)->GetNumberOfMissingValues(); ++k)
+        {
+          static_cast<F*>(to)->AddMissingValue(static_cast<F*>(from)->GetMissingValue(k));
+        }
+      },
+      [](vtkPolyDataAlgorithm* a, vtkPolyDataAlgorithm* b)
+      {
+        const int count = static_cast<F*>(a)->GetNumberOfMissingValues();
+        bool areEqual = count == static_cast<F*>(b)->GetNumberOfMissingValues();
+        for (int k = 0; k < count && areEqual; ++k)
+        {
+          areEqual =
+            static_cast<F*>(a)->GetMissingValue(k) == static_cast<F*>(b)->GetMissingValue(k);
+        }
+        return areEqual;
+      } },
     RANDOM_PROPERTY(F, AlongDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
     RANDOM_PROPERTY(F, AcrossDiffusivity, dice.Flip() ? 1.0 : Positive(dice)),
     RANDOM_PROPERTY(F, ResultOnCells, dice.Flip()),

@@ -38,6 +38,7 @@ const std::set<std::string> WithoutEffectInClass = {
   "vtkSurfaceSegmentationFilter RandomSeed", // the best of several starts
   "vtkSurfaceInterpolationFilter MaximumDistance", // of points on the second input
   "vtkSurfaceDistanceFilter MaximumDistance", // likewise
+  "vtkSurfaceInterpolationFilter MissingValue", // which no value is
   "vtkSurfaceInterpolationFilter PointValueArray", "vtkSurfaceInterpolationFilter PointWeightArray",
   "vtkSurfaceInterpolationFilter RandomSeed", // of more values than the surface has
 };
@@ -368,7 +369,7 @@ std::set<std::string> SettableInHeaders(const std::string& className)
   {
     const std::string text = ReadCode(folder / (name + ".h"));
     const std::regex setter(
-      R"((?:\bvtkSet\w*Macro\(\s*|\bSURFACEDIFFUSION_(?:PROPERTY|SWITCH|CHOICE|NAME)\(|\bSet)([A-Z]\w*)\b\s*[(,)])");
+      R"((?:\bvtkSet\w*Macro\(\s*|\bSURFACEDIFFUSION_(?:PROPERTY|SWITCH|CHOICE|NAME)\(|\b(?:Set|Add))([A-Z]\w*)\b\s*[(,)])");
     for (std::sregex_iterator match(text.begin(), text.end(), setter), end; match != end; ++match)
     {
       names.insert((*match)[1]);

@@ -9,7 +9,7 @@ from .. import heat, intrinsic_tv
 from .. import interpolate as fit
 from ..files import new_data
 from ..files.content import check_output_folder
-from . import common, inputs
+from . import common, inputs, values
 from .report import number, number_text
 from .stages import (
     change_data, columns_of_arrays, columns_of_missing, given, read_surface_for_output)
@@ -84,6 +84,8 @@ def add_interpolate(commands):
                     "leave out points farther than D from the surface, in the unit of the coordinates "
                     "(default: none)")
     common.coordinates(parser, "VALUES")
+    parser.add_argument("--missing-value", metavar="V", type=values.finite, action="append", default=[],
+                        help="a number that stands for no value, as NaN does, such as -10000 (repeatable)")
     parser.add_argument("--error", metavar="FILE",
                         help="write the standard error of the map, which is large where nothing was "
                              "measured, in one of the formats of OUTPUT")
@@ -95,7 +97,7 @@ def interpolate(arguments, report):
     if arguments.error is not None:
         check_output_folder(arguments.error)
     with report.timed("read"):
-        places, values, names = inputs.read_values(arguments.values, surface)
+        places, measured, names = inputs.read_values(arguments.values, surface)
     if places is None:
         inputs.refuse(arguments, ["--within"], f"with values at vertices, in {arguments.values}",
                       "a table of points")
@@ -105,12 +107,14 @@ def interpolate(arguments, report):
     errors = new_data(surface, arguments.error, names) if arguments.error else None
     with report.working("Interpolation") as progress:
         result = fit(
-            surface.solver, values, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
+            surface.solver, measured, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
             correlation_length=arguments.length or 0.0, boundary="Natural" if arguments.flat else "Automatic",
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
+            missing_value=arguments.missing_value,
             compute_error=errors is not None, robust=arguments.robust, progress=progress, **given(smoothing=arguments.smoothing),
             **common.merging(arguments))
-    if places is not None and arguments.ras == "tkr" and surface.center.any() and result.median_distance > result.mean_edge_length:
+    is_tkr = places is not None and arguments.ras == "tkr" and surface.center.any()
+    if is_tkr and result.median_distance > result.mean_edge_length:
         report.warn(f"{surface.path} has FreeSurfer's coordinates, and points in the scanner's are larger by its "
                     f"c_ras, ({', '.join(map(number_text, surface.center))}): give --ras scanner")
     rows = zip(result.smoothing, result.misfit, result.degrees_of_freedom, result.noise_level)

@@ -23,6 +23,7 @@ _OPTIONS = {
     "fidelity_weight": ("weight", "--weight"),
     "maximum_distance": ("within", "--within"),
     "maximum_number_of_triangles": ("maximum_triangles", "--maximum-triangles"),
+    "missing_value": ("missing_value", "--missing-value"),
     "merge_coincident_points": ("merge", "--merge"),
     "merge_tolerance": ("merge_tolerance", "--merge-tolerance"),
     "noise_level": ("noise", "--noise"),

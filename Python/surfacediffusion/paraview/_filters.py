@@ -314,6 +314,16 @@ class Segmentation(ModelFilter):
 class Interpolation(ModelFilter):
     POINT_INPUTS = 1
 
+    def AddMissingValue(self, value: float) -> None:
+        self._pass_missing([*self.settings.get("MissingValue", []), float(value)])
+
+    def RemoveAllMissingValues(self) -> None:
+        self._pass_missing([])
+
+    def _pass_missing(self, numbers: list[float]) -> None:
+        self.settings["MissingValue"] = numbers
+        self.Modified()
+
     def read_points(self, data: Any) -> tuple[Any, list[str]]:
         return read_samples(data, self.own["PointValueArray"], self.own["PointWeightArray"])
 

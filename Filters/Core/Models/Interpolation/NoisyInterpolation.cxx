@@ -194,7 +194,15 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     std::tie(deviations, ofSlopes) =
       this->ErrorOverSmoothing(work, result, first, progress.Part(0.4, 0.8));
   }
-  else if (this->Options.ComputeError)
+  else if (this->Options.ComputeError && this->Options.Smoothing != Choice::Given)
+  {
+    const double fitted = work.Fit.GetSmoothing();
+    std::tie(deviations, ofSlopes) =
+      this->ErrorOverFactors(work, first, all.col(0), progress.Part(0.4, 0.8));
+    this->Prepare(work, result, fitted, work.None, progress.Part(0.8, 0.8));
+  }
+  const bool isOverSmoothing = deviations.size() > 0;
+  if (this->Options.ComputeError && !isOverSmoothing)
   {
     const SlopeSquares slopes(this->Assembly->Mesh(), this->Parallel);
     std::vector<InverseEntry> edges = slopes.Edges();
@@ -223,30 +231,23 @@ bool SmoothInterpolation::FitColumns(Work& work, Result& result, Eigen::Index fi
     found.Residual = std::sqrt(square / rows.Weights.sum());
     found.NoiseLevel = this->Options.NoiseLevel > 0.0 ? this->Options.NoiseLevel
                                                       : std::sqrt(squares / std::max(fewest, left));
-    if (this->Options.ComputeError && work.Spectrum)
-    {
-      result.Error.col(first + c) = // without bounds
-        isOpen.select(std::numeric_limits<double>::infinity(), deviations.array());
-      result.SlopeError.col(first + c) =
-        isOpen.select(std::numeric_limits<double>::infinity(), ofSlopes.array());
-      result.HasUnknownError = result.HasUnknownError || result.Error.col(first + c).hasNaN();
-    }
-    else if (this->Options.ComputeError)
+    if (this->Options.ComputeError)
     {
       // Nothing is left if the fit reaches all values, by its freedom or because they are alike.
       constexpr double resolved = 16.0 * std::numeric_limits<double>::epsilon();
-      const bool isKnown = this->Options.NoiseLevel > 0.0 ||
+      const bool isKnown = this->Options.NoiseLevel > 0.0 || work.Spectrum ||
         (left > fewest &&
           std::sqrt(squares / rows.Weights.sum()) >
             work.RoundOff(first + c, resolved, result.IsFlattest));
       const double factor = this->Options.NoiseLevel > 0.0 ? 1.0 : StudentFactor(left);
-      const double scale =
-        isKnown ? factor * found.NoiseLevel : std::numeric_limits<double>::quiet_NaN();
+      const double scale = !isKnown ? std::numeric_limits<double>::quiet_NaN()
+        : isOverSmoothing           ? 1.0
+                                    : factor * found.NoiseLevel;
       result.Error.col(first + c) = isOpen.select(
         std::numeric_limits<double>::infinity(), scale * deviations.array()); // without bounds
       result.SlopeError.col(first + c) =
         isOpen.select(std::numeric_limits<double>::infinity(), scale * ofSlopes.array());
-      result.HasUnknownError = result.HasUnknownError || !isKnown;
+      result.HasUnknownError = result.HasUnknownError || result.Error.col(first + c).hasNaN();
     }
     result.U.col(first + c) = u;
   }

@@ -34,9 +34,8 @@ struct RepeatedValues;
 ///   (1 - (A 1)_i)^2 Var(m),  Var(m) / s^2 = w^T (W^-1 + B (mu Q)^-1 B^T) w,
 /// with the fit A 1 of values that are all 1. The errors of both parts do not correlate, since the
 /// fit is the best linear predictor. A band of 1.645 standard errors holds 90 %: they are longer than
-/// the deviation by StudentFactor() if s is estimated, and with up to InfluenceSpectrum::FewValues
-/// places a mu that is found has a distribution, over which the mean square of the error is taken; see
-/// SmoothingPosterior.
+/// the deviation by StudentFactor() if s is estimated, and a mu that is found has a distribution, over
+/// which the mean square of the error is taken; see SmoothingPosterior.
 class SmoothInterpolation
 {
 public:
@@ -145,6 +144,8 @@ private:
   /// The standard error and that of slopes.
   std::pair<Vector, Vector> ErrorOverSmoothing(
     Work& work, Result& result, Eigen::Index column, const ProgressMonitor& progress) const;
+  std::pair<Vector, Vector> ErrorOverFactors(
+    Work& work, Eigen::Index column, const Values& u, const ProgressMonitor& progress) const;
   static Vector FindLeverage(const Work& work, const ProgressMonitor& progress);
   double StartSmoothing(const Work& work) const;
 

@@ -12,6 +12,13 @@
 namespace SurfaceDiffusion
 {
 
+namespace
+{
+
+constexpr double CutOffExponent = 0.25; ///< of mu^-1/4, the wave number that the fit cuts off
+
+} // namespace
+
 SmoothingPosterior::SmoothingPosterior(
   const InfluenceSpectrum& spectrum, const RepeatedValues& data, Eigen::Index column, double noise)
   : Spectrum(spectrum)
@@ -47,15 +54,14 @@ SmoothingPosterior::SmoothingPosterior(
     (left(std::exp(middle)).sum() > 0.5 * count ? high : low) = middle;
   }
   this->Middle = std::exp(0.5 * (low + high));
-  constexpr double farthest = 16.0; // of log(mu) from the middle
   constexpr double step = 0.5; // beside deviations of 0.3 or more
   double most = -std::numeric_limits<double>::infinity();
-  for (double t = -farthest; t <= farthest; t += step)
+  for (double t = -Farthest; t <= Farthest; t += step)
   {
     const double mu = this->Middle * std::exp(t);
     const Vector shares = left(mu);
     const double misfit = shares.dot(this->Parts.cwiseAbs2()) + data.Scatter.col(column).sum();
-    double logarithm = -std::log1p(std::exp(t)) - std::log1p(std::exp(-t));
+    double logarithm = LogPrior(std::exp(t));
     logarithm += 0.5 * hasEnergy.select(shares.array().max(1e-300).log().matrix(), 0.0).sum();
     logarithm -= noise > 0.0 ? 0.5 * misfit / (noise * noise) : 0.5 * freedom * std::log(misfit);
     const double factor = StudentFactor(freedom);
@@ -80,6 +86,11 @@ SmoothingPosterior::SmoothingPosterior(
       this->Nodes.push_back(node);
     }
   }
+}
+
+double SmoothingPosterior::LogPrior(double ratio)
+{
+  return -std::log(std::cosh(CutOffExponent * std::log(ratio)));
 }
 
 double SmoothingPosterior::Resolving(double mu) const

@@ -15,9 +15,9 @@ namespace SurfaceDiffusion
 /// sigma^2/(1 - s). With a prior 1/sigma for the deviation sigma of values of weight 1, with what q
 /// repeats of places leave of their means, and with the prior p of mu,
 ///   p(mu | d) ~ p(log mu) prod (1 - s)^(1/2) (sum z^2 (1 - s) + scatter)^(-(m + q)/2),
-/// and with a given sigma exp(-sum z^2 (1 - s)/(2 sigma^2)) in place of the last factor. p is uniform
-/// in rho = mu/(mu + mu_h), the share of noise (M. Daniels, A prior for the variance in hierarchical
-/// models, Canad. J. Statist. 27, 1999), where the mean of the m eigenvalues is 1/2 at mu_h.
+/// and with a given sigma exp(-sum z^2 (1 - s)/(2 sigma^2)) in place of the last factor. p is the half-Cauchy
+/// distribution (A. Gelman, Bayesian Anal. 1, 2006) of mu^(-1/4), the wave number beyond which the fit
+/// smooths, so that p(log mu) ~ 1/cosh(log(mu/mu_h)/4), where the mean of the m eigenvalues is 1/2 at mu_h.
 class SmoothingPosterior
 {
 public:
@@ -29,6 +29,10 @@ public:
   double Contrast() const { return this->RootMeanSquare; }
   /// False: the values leave nothing to estimate sigma from.
   bool IsKnown() const { return !this->Nodes.empty(); }
+
+  static constexpr double Farthest = 16.0; ///< |log(mu/mu_h)|
+  /// log(p(log mu)) of mu/mu_h, up to a constant.
+  static double LogPrior(double ratio);
 
   /// The mu nearest to this one from which the factor resolves the distribution.
   double Resolving(double mu) const;
