@@ -111,7 +111,9 @@ class Structures(WorkbenchTest):
                 (f"{' '.join(SURFACES)} --areas l.shape.gii --areas CORTEX_LEFT l.shape.gii",
                  "--areas l.shape.gii: areas of a surface that has some"),
                 (f"{' '.join(SURFACES)} --surface CORTEX_LEFT l.surf.gii", "--surface CORTEX_LEFT and another surface"),
-                (" ".join(SURFACES).replace("d.surf", "h.surf"), f"a.dscalar.nii: {N} values per column, but "
+                (" ".join(SURFACES).replace("d.surf", "h.surf"), "--surface HIPPOCAMPUS_DENTATE_RIGHT: for "
+                 "HippocampusDentateRight, but h.surf.gii is of HippocampusLeft; allowed: the same hemisphere"),
+                (" ".join(SURFACES).replace("d.surf", "h.surf") + " --any-hemisphere", f"a.dscalar.nii: {N} values per column, but "
                  f"h.surf.gii has {len(FINE)} points"),
                 (f"{' '.join(SURFACES)} --areas THALAMUS_LEFT l.shape.gii", "areas of ThalamusLeft; allowed: of "
                  "CortexLeft, HippocampusLeft, HippocampusDentateRight, by --areas STRUCTURE FILE")):

@@ -255,7 +255,7 @@ class SameResampling(WorkbenchTest):
         for level, other in ((3, 4), (4, 3)):
             points, faces = samples.sphere(level, 40.0)
             samples.write_surface("a.surf.gii", points, faces)
-            samples.write_surface("b.surf.gii", *turned(other, 100.0))
+            samples.write_surface("b.surf.gii", *turned(other, 110.0))
             noise = np.random.default_rng(level).normal(size=(2, len(points)))
             samples.write_gifti("a.func.gii", {"one": noise[0], "two": noise[1]})
             samples.write_gifti("roi.func.gii", {"roi": points[:, 0] > -20})

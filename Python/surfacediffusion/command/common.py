@@ -18,7 +18,7 @@ SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface",
 
 #: What a run reads where a command has no such argument
 ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "structures": [], "faces": False, "areas": [],
-          "match_columns": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
+          "match_columns": False, "any_hemisphere": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
 
 SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK."
 
@@ -106,6 +106,12 @@ def hemispheres(parser):
                         metavar=("STRUCTURE", "FILE"),
                         help="the surface of another structure, by Workbench's word, such as HIPPOCAMPUS_LEFT or "
                              "HIPPOCAMPUS_DENTATE_RIGHT; can be repeated")
+    any_hemisphere(parser)
+
+
+def any_hemisphere(parser):
+    parser.add_argument("--any-hemisphere", "-any-hemisphere", action="store_true",
+                        help="take data and surfaces of different hemispheres, too")
 
 
 def surface_and_data(parser, many=False):
@@ -113,6 +119,7 @@ def surface_and_data(parser, many=False):
         hemispheres(parser)
     else:
         mesh(parser)
+        any_hemisphere(parser)
     parser.add_argument("data", metavar="DATA", nargs="+" if many else None,
                         help="the values at its vertices"
                              + "; several files, if OUTPUT is a folder" * many)
@@ -189,7 +196,7 @@ def coordinates(parser, which):
     """Of which points the coordinates are given."""
     parser.add_argument("--ras", choices=("tkr", "scanner"), default="tkr",
                         help=f"the coordinates of {which}: tkr: those of SURFACE (default); scanner: larger by "
-                             "FreeSurfer's c_ras, which is in the file of SURFACE")
+                             "FreeSurfer's c_ras, or by the transform of GIFTI, which is in the file of SURFACE")
 
 
 # ---- numbers -------------------------------------------------------------------------------------

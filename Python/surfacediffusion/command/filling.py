@@ -64,6 +64,7 @@ def add_interpolate(commands):
         ["atrium.vtp electrodes.csv times.vtp --error errors.npy",
          "lh.pial.surf.gii implants.txt map.shape.gii --exact"], POINTS)
     common.mesh(parser)
+    common.any_hemisphere(parser)
     parser.add_argument("values", metavar="VALUES", help="the values, with their points or at vertices")
     common.output(parser, "the map, values at the vertices")
     level = parser.add_mutually_exclusive_group()
