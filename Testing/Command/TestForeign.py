@@ -329,8 +329,9 @@ class FreeSurfer(ForeignTest):
     def test_the_other_hemisphere_is_an_error(self):
         samples.write_surface("rh.white")
         samples.write_curv("lh.thickness")
-        message = "lh.thickness: data of the left hemisphere by its name, but rh.white is of CortexRight; allowed: the same "
-        self.refused(message + "hemisphere, or any with --any-hemisphere", "smooth", "rh.white", "lh.thickness", 5, "o.curv")
+        message = "lh.thickness: data of the left hemisphere by its name, but rh.white is of CortexRight; allowed: the "
+        self.refused(message + "same hemisphere, or any with --any-hemisphere", "smooth", "rh.white", "lh.thickness", 5,
+                     "o.curv")
         self.refused(message, "distance", "rh.white", "lh.thickness", "d.npy")
         self.succeed("smooth", "rh.white", "lh.thickness", 5, "o.curv", "--any-hemisphere")
         samples.write_surface("lh.white")
@@ -346,8 +347,8 @@ class FreeSurfer(ForeignTest):
         self.refused("data of the right hemisphere by its name, but R.surf.gii is of HippocampusLeft", *words)
         words[2] = samples.write_gifti("R.func.gii", {"a": samples.NOISE}, "CortexLeft")
         words[4] = "o.func.gii"
-        self.refused("R.func.gii: data of CortexLeft, but R.surf.gii is of HippocampusLeft; allowed: the same structure",
-                     *words, "--any-hemisphere")
+        self.refused("R.func.gii: data of CortexLeft, but R.surf.gii is of HippocampusLeft; allowed: the same "
+                     "structure", *words, "--any-hemisphere")
         samples.write_cifti("a.dscalar.nii", [np.tile(samples.NOISE, 2)])
         words = ["smooth", "a.dscalar.nii", 5, "o.dscalar.nii", "--left", "rh.white", "--right", "lh.white"]
         self.refused("--left: for CortexLeft, but rh.white is of CortexRight; allowed: the same hemisphere", *words)
@@ -359,7 +360,8 @@ class FreeSurfer(ForeignTest):
         samples.write_gifti("L.shape.gii", {"a": samples.NOISE})
         ball, bumps = 10 * POINTS, 10 * POINTS * (1 + 0.02 * np.sin(POINTS[:, :1]))
         words = ["smooth", "x.surf.gii", "L.shape.gii", 50, "o.shape.gii"]
-        for points, text in ((ball + 7, "x.surf.gii is a sphere of radius 100: lengths and areas"), (bumps, ""), (8 * POINTS, ""),
+        for points, text in ((ball + 7, "x.surf.gii is a sphere of radius 100: lengths and areas"), (bumps, ""),
+                             (8 * POINTS, ""),
                              (bumps / 1000, "x.surf.gii is 0.2 long, and a cortex in mm 20 to 500: lengths"),
                              (1000 * bumps, "x.surf.gii is 2e.05 long, and a cortex in mm 20 to 500")):
             samples.write_surface("x.surf.gii", points)
@@ -383,7 +385,8 @@ class FreeSurfer(ForeignTest):
             samples.write_surface(name)
             self.warned(expected.format(name, shape), "smooth", name, "lh.thickness", 5, "o.curv")
             self.warned(expected.format(name, shape), "distance", name, "o.curv", "--from", 0)
-        for name, shape in (("L.sphere.32k_fs_LR.surf.gii", "spherical"), ("sub-01_hemi-L_inflated.surf.gii", "inflated")):
+        for name, shape in (("L.sphere.32k_fs_LR.surf.gii", "spherical"),
+                            ("sub-01_hemi-L_inflated.surf.gii", "inflated")):
             image = nib.load(samples.write_surface(name))
             image.darrays[0].meta.pop("GeometricType", None)
             nib.save(image, name)
@@ -455,7 +458,8 @@ class Sentences(ForeignTest):
         self.assertRegex(error, r"\Asurfacediffusion: b.off: .*\nsurfacediffusion: c.bin: .*\n\Z")
 
     def test_commands_of_workbench_are_answered_with_those_that_are_here(self):
-        for word, here in (("-cifti-gradient", "derivatives"), ("-metric-dilate", "inpaint, which fills by harmonic functions")):
+        for word, here in (("-cifti-gradient", "derivatives"),
+                           ("-metric-dilate", "inpaint, which fills by harmonic functions")):
             self.refused(f"^surfacediffusion: {word} is a command of Workbench .*; allowed: surfacediffusion "
                          f"{here}, or -metric-smoothing, -cifti-smoothing, -metric-resample", word, "a", "b", "c")
 

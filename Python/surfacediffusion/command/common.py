@@ -17,7 +17,8 @@ SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface",
          "-surface")
 
 #: What a run reads where a command has no such argument
-ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "structures": [], "faces": False, "areas": [],
+ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "structures": [], "faces": False,
+          "areas": [],
           "match_columns": False, "any_hemisphere": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
 
 SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK."
@@ -35,7 +36,8 @@ FILES = f"""
 {SURFACES}
 """ + paragraph(
     "DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left, --right, "
-    "--cerebellum and --surface STRUCTURE FILE instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), text with "
+    "--cerebellum and --surface STRUCTURE FILE instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), "
+    "NumPy (.npy), text with "
     "one number per line (.txt; # starts a comment), or a PLY or VTK file with data at its vertices; with "
     "--faces, where there is that option, at the faces. Files are recognised by their content, and may be "
     "compressed by gzip, or pipes. OUTPUT has the format and the metadata of DATA, and its name the extension "

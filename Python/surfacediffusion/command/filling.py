@@ -109,9 +109,11 @@ def interpolate(arguments, report):
             surface.solver, values, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
             correlation_length=arguments.length or 0.0, boundary="Natural" if arguments.flat else "Automatic",
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
-            compute_error=errors is not None, robust=arguments.robust, progress=progress, **given(smoothing=arguments.smoothing),
+            compute_error=errors is not None, robust=arguments.robust, progress=progress,
+            **given(smoothing=arguments.smoothing),
             **common.merging(arguments))
-    if places is not None and arguments.ras == "tkr" and surface.center.any() and result.median_distance > result.mean_edge_length:
+    is_far = result.median_distance > result.mean_edge_length
+    if places is not None and arguments.ras == "tkr" and surface.center.any() and is_far:
         report.warn(f"{surface.path} has FreeSurfer's coordinates, and points in the scanner's are larger by its "
                     f"c_ras, ({', '.join(map(number_text, surface.center))}): give --ras scanner")
     rows = zip(result.smoothing, result.misfit, result.degrees_of_freedom, result.noise_level)
@@ -122,7 +124,8 @@ def interpolate(arguments, report):
                   "degrees_of_freedom": number(freedom), "noise": number(noise)}
                  for name, (mu, misfit, freedom, noise) in zip(names, rows)])
     if arguments.robust:
-        report.facts["outliers"] = np.flatnonzero(result.outliers.reshape(len(result.outliers), -1).any(axis=1)).tolist()
+        outliers = result.outliers.reshape(len(result.outliers), -1)
+        report.facts["outliers"] = np.flatnonzero(outliers.any(axis=1)).tolist()
     with report.timed("write"):
         target.save(arguments.output, [result.values.astype(np.float32)])
         if errors is not None:

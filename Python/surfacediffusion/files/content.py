@@ -23,13 +23,15 @@ NAMES = {
     "gifti": "GIFTI", "cifti": "CIFTI", "nifti": "NIfTI", "mgh": "FreeSurfer mgh",
     "freesurfer": "FreeSurfer surface", "asc": "FreeSurfer asc", "curv": "FreeSurfer curv",
     "label": "FreeSurfer label", "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY",
-    "stl": "STL", "3mf": "3MF", "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid", "npy": "NumPy npy", "text": "text",
+    "stl": "STL", "3mf": "3MF", "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid",
+    "npy": "NumPy npy", "text": "text",
 }
 
 # The ends of names by which an output that is named like another format, or like none, is noticed.
 EXTENSIONS = {
     ".gii": "gifti", ".mgh": "mgh", ".mgz": "mgh", ".label": "label", ".asc": "asc", ".off": "off", ".obj": "obj",
-    ".ply": "ply", ".stl": "stl", ".3mf": "3mf", ".vtk": "vtk", ".vtp": "vtp", ".vtu": "vtu", ".npy": "npy", ".nii": "nifti",
+    ".ply": "ply", ".stl": "stl", ".3mf": "3mf", ".vtk": "vtk", ".vtp": "vtp", ".vtu": "vtu",
+    ".npy": "npy", ".nii": "nifti",
     ".annot": "annot", ".txt": "text",
 }
 
