@@ -155,7 +155,7 @@ class ResampledFiles(WorkbenchTest):
     def setUp(self):
         super().setUp()
         samples.write_surface("a.surf.gii")
-        samples.write_surface("b.surf.gii", *turned(3, 100.0))
+        samples.write_surface("b.surf.gii", *turned(3, 110.0))
         samples.write_gifti("a.func.gii", {"one": NOISE, "two": SMOOTH})
         samples.write_gifti("roi.func.gii", {"roi": POINTS[:, 2] > -3})
 

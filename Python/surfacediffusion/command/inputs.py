@@ -50,7 +50,8 @@ class Patch:
 
     def to_part(self, values):
         """The rows of the part. Outside the region the values are 0."""
-        values = np.where(self.excluded.reshape(len(values), -1), 0, values)
+        if self.excluded.any():
+            values = np.where(self.excluded.reshape(len(values), -1), 0, values)
         return values if self.part.vertices is None else values[self.part.vertices]
 
 
@@ -203,7 +204,8 @@ def make_patches(surfaces, data: Data, columns, arguments, labels=False):
     patches = []
     for part in data.parts:
         surface = surface_for(part, surfaces, data)
-        values = np.array(part.values[:, columns], order="C", dtype=_float_type(part.values))
+        every = list(columns) == list(range(part.values.shape[1]))
+        values = np.array(part.values if every else part.values[:, columns], order="C", dtype=_float_type(part.values))
         require_finite(values, data, part, columns)
         if arguments.fix_zeros:
             values[values == 0] = np.nan
