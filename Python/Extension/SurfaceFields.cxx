@@ -135,8 +135,8 @@ double SurfaceFields::FilterScales(const ColumnArray& values, const FactorArray&
   PythonProgress(progress).Run(
     [&](const ProgressMonitor& monitor)
     {
-      ResolventPolynomial filter = MakeScaleFilter(this->Built->SharedAssembler(),
-        this->LengthsOfVertices(wavelengths), order, PythonThreads::Instance());
+      ScaleFilter filter(this->Built->SharedAssembler(), this->LengthsOfVertices(wavelengths),
+        order, PythonThreads::Instance());
       const auto columns = static_cast<Eigen::Index>(values.shape(1));
       const auto all = static_cast<double>(columns);
       for (Eigen::Index start = 0; start < columns; start += ColumnPanel)

@@ -111,8 +111,8 @@ def random_field(
     ----------
     F. Lindgren, H. Rue, J. Lindstrom, An explicit link between Gaussian fields and Gaussian Markov
     random fields, J. R. Statist. Soc. B 73, 2011, 423-498. D. Bolin, K. Kirchner, The rational SPDE approach
-    for Gaussian random fields with general smoothness, J. Comput. Graph. Stat. 29, 2020, 274-285. K. Takahashi, J. Fagan, M. Chin, Formation
-    of a sparse bus impedance matrix, PICA 1973.
+    for Gaussian random fields with general smoothness, J. Comput. Graph. Stat. 29, 2020, 274-285. K. Takahashi,
+    J. Fagan, M. Chin, Formation of a sparse bus impedance matrix, PICA 1973.
 
     Examples
     --------
@@ -221,7 +221,8 @@ def leave_out_missing(
     if masks_faces == of_faces:
         return place(missing | (flags != 0), of_faces)
     faces = np.repeat(np.arange(surface.n_faces), np.diff(surface._offsets))
-    of_points, masked = (flags != 0, missing) if of_faces else (missing, flags != 0)
+    marked = np.array(flags != 0)
+    of_points, masked = (marked, np.array(missing)) if of_faces else (np.array(missing), marked)
     masked[faces[of_points[surface._connectivity]]] = True
     return place(masked, True)
 

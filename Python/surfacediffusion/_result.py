@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 __all__ = [
     "ArrayResult", "ConductionVelocity", "CurvatureResult", "DerivativesResult", "DiffusionResult",
     "EdgeResult", "HarmonicMapResult", "HelmholtzParts", "InterpolationResult", "LeaveOneOut",
-    "MeshDenoisingResult", "ModelResult", "RegionBoundary", "Result", "SegmentationResult", "TensorDiffusionResult", "TextureResult",
+    "MeshDenoisingResult", "ModelResult", "RegionBoundary", "Result", "SegmentationResult",
+    "TensorDiffusionResult", "TextureResult",
 ]
 
 

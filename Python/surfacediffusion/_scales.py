@@ -43,7 +43,9 @@ def scale_filter(
     Constants and the integral over each connected part of the surface stay, and nothing flows across
     boundaries and parts that are left out. With the matrices M of :func:`mass_matrix` and K of
     :func:`stiffness_matrix` the operator is M + 2 K / k^2 for order 1, one step of backward Euler of
-    2 / k^2. Order 2 is a polynomial of degree 26 in such a step, exact to 2e-10.
+    2 / k^2. Order 2 is the real part of such a step of sqrt(2) i / k^2, by conjugate gradients to 1e-10; where
+    these need many iterations, for wavelengths of more than some 50 edges and on needles, a polynomial of
+    degree 26 in a step of sqrt(2) / k^2, exact to 2e-10.
 
     Data at faces go to the points and back, with their integral, and what points do not resolve of them is
     filtered by fluxes between faces. For smooth data this is of second order in the length of edges.

@@ -95,8 +95,9 @@ def surrogates(
     Returns
     -------
     Surrogates
-        `values` (points, n), (faces, n) or (parcels, n), and the model: `fwhm` (k,) and `variances` (k,). Points without a face that
-        is left, of points with known values, are NaN, too, and their values are not in the surrogates.
+        `values` (points, n), (faces, n) or (parcels, n), and the model: `fwhm` (k,) and `variances` (k,). Points
+        without a face that is left, of points with known values, are NaN, too, and their values are not in the
+        surrogates.
 
     Notes
     -----
@@ -183,7 +184,7 @@ class _Model:
     def fit(self, scores: NDArray[np.float64], reporter: ProgressReporter) -> NDArray[np.float64]:
         """The variances of the fields."""
         found, maps = [], [scores[:, None]]
-        for k in np.arange(len(self.widths)):
+        for k in range(len(self.widths)):
             maps.append(self._draw(k, STREAM // 2, np.empty((len(self._areas), self._samples[k])),
                                    reporter.callable))
             # Maps of several widths share the factors of the filters, as memory allows.
@@ -206,7 +207,7 @@ class _Model:
     ) -> NDArray[np.float64]:
         """Sums of n fields of each width, of which those with a variance are needed."""
         total = np.zeros((len(self._areas), n))
-        for k in np.arange(len(self.widths)):
+        for k in range(len(self.widths)):
             for first in np.arange(0, n if variances[k] > 0.0 else 0, _SAMPLE):
                 part = np.empty((len(self._areas), min(_SAMPLE, n - int(first))))
                 share = part_of(reporter.callable, first / n, part.shape[1] / n)

@@ -100,8 +100,8 @@ def _find_axis(data: Any, surface: Surface, dim: str | None) -> tuple[int, bool]
     for count, on_faces in ((surface.n_faces, True), (surface.n_points, False)):
         found = [name for name, size in sizes.items() if size == count and dim in (None, name)]
         if len(found) > 1:
-            raise ValueError(f"data has dimensions {' and '.join(map(str, found))} of {count} values; allowed: dim= one "
-                             "of them")
+            raise ValueError(f"data has dimensions {' and '.join(map(str, found))} of {count} values; allowed: "
+                             "dim= one of them")
         if found:
             return list(sizes).index(found[0]), on_faces
     raise ValueError(f"data has sizes {', '.join(f'{name} {size}' for name, size in sizes.items())}; allowed: a "

@@ -195,7 +195,7 @@ CASES = [
     ("smooth lh.surf.gii a.dscalar.nii 5 out.nii", "a.dscalar.nii .*; give --left and --right"),
     ("smooth a.dscalar.nii 5 out.dscalar.nii --left lh.surf.gii", "data of CortexRight; add --right FILE"),
     ("smooth a.dscalar.nii 5 out.nii --left rh.surf.gii --right lh.surf.gii",
-     "rh.surf.gii: a surface of CortexRight; allowed for --left: CortexLeft"),
+     "--left: for CortexLeft, but rh.surf.gii is of CortexRight; allowed: the same hemisphere, or any with --any-"),
     ("smooth a.dscalar.nii 5 out.nii --left other.surf.gii --right rh.surf.gii",
      f"a.dscalar.nii: {N} values per column, but other.surf.gii has 42 points"),
     (CIFTI.format("a.dscalar.nii") + " --roi zeros.func.gii", "zeros.func.gii is of one surface; allowed: "),

@@ -124,7 +124,7 @@ class Smooth(CommandTest):
         np.testing.assert_allclose(self.column("b.label"), expected[vertices], atol=1e-5)
 
     def test_each_hemisphere_of_cifti_has_its_surface(self):
-        samples.write_surface("rh.surf.gii", POINTS * 0.7, FACES, "CortexRight")
+        samples.write_surface("rh.surf.gii", POINTS * 1.05, FACES, "CortexRight")
         left = np.flatnonzero(INSIDE)
         rows = np.stack([np.concatenate([NOISE[left], NOISE])] * 2)
         samples.write_cifti("a.dscalar.nii", rows, left=left)
@@ -345,10 +345,30 @@ class OtherCommands(CommandTest):
             place = ",".join(map(str, POINTS[7] + c_ras))
             self.succeed(f"distance {surface} distance.npy --from {place} --ras scanner")
             self.assertEqual(np.argmin(np.load("distance.npy")), 7)
+            self.succeed(f"path {surface} path.npy --from {place} --to 90 --ras scanner")
+            np.testing.assert_allclose(np.load("path.npy")[[0, -1]], POINTS[[7, 90]], atol=1e-5)
             np.testing.assert_allclose(np.load("scanner.npy").ravel()[::5], POINTS[::5, 2] + 20, atol=1e-3)
         code, _, error = run(*"interpolate lh.surf.gii values.csv out.npy --ras scanner".split())
         self.assertEqual(code, 2)
         self.assertIn("--ras scanner with lh.surf.gii, which has no c_ras; allowed: surfaces of FreeSurfer", error)
+
+    def test_transforms_of_gifti_to_the_scanner_are_applied(self):
+        image = nib.load("lh.surf.gii")
+        turn = np.array([[0, -2, 0, 5], [1, 0, 0, -7], [0, 0, 1, 3], [0, 0, 0, 1]], dtype=float)
+        place = turn[:3, :3] @ POINTS[7] + turn[:3, 3]
+        for space, transformed, xform, expected in ((0, 1, turn, place), (3, 1, turn, place), (1, 4, turn, POINTS[7])):
+            image.darrays[0].coordsys = nib.gifti.GiftiCoordSystem(space, transformed, xform)
+            nib.save(image, "turned.surf.gii")
+            words = ",".join(map(str, expected))
+            self.succeed(f"path turned.surf.gii path.npy --from={words} --to 90 --ras scanner")
+            np.testing.assert_allclose(np.load("path.npy")[[0, -1]], POINTS[[7, 90]], atol=1e-5)
+            self.succeed(f"distance turned.surf.gii distance.npy --from={words} --ras scanner")
+            self.assertEqual(np.argmin(np.load("distance.npy")), 7)
+        image.darrays[0].coordsys = nib.gifti.GiftiCoordSystem(0, 4, turn)
+        nib.save(image, "turned.surf.gii")
+        code, _, error = run(*"path turned.surf.gii p.npy --from 1,2,3 --to 90 --ras scanner".split())
+        self.assertEqual(code, 2)
+        self.assertIn("VolGeomC_S or a transform to NIFTI_XFORM_SCANNER_ANAT", error)
 
     def test_interpolate_takes_points_beside_the_surface(self):
         places = 1.05 * POINTS[::5]

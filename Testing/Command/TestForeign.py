@@ -299,14 +299,14 @@ class FreeSurfer(ForeignTest):
         def number(value):
             return struct.pack(">i", value)[1:]
 
-        points = np.array([[x, y, 0] for x in range(4) for y in range(4)])
+        points = np.array([[x, y, 0] for x in range(4) for y in range(4)]) * 9
         quads = [[4 * i + j, 4 * i + 4 + j, 4 * i + 5 + j, 4 * i + 1 + j] for i in range(3) for j in range(3)]
         self.write("lh.orig", b"\xff\xff\xff" + number(16) + number(9) + (points * 100).astype(">i2").tobytes()
                    + b"".join(number(corner) for face in quads for corner in face))
         said = "lh.orig: quadrangles, which are read, and written, as two triangles each"
         self.assertIn("freesurfer, 16 points, 18 faces", self.warned(said, "info", "lh.orig"))
         np.save("v.npy", np.arange(16.0))
-        self.warned(said, "smooth", "lh.orig", "v.npy", 2, "o.npy")
+        self.warned(said, "smooth", "lh.orig", "v.npy", 18, "o.npy")
         self.assertIn("curv", self.succeed("info", samples.write_curv("lh.curv")))
 
     def test_surfaces_in_text_are_read_and_written(self):
@@ -326,13 +326,56 @@ class FreeSurfer(ForeignTest):
             self.refused("lh.asc: damaged FreeSurfer asc file: ", "info",
                          self.write("lh.asc", "\n".join(lines[:part]) + "\n"))
 
-    def test_the_other_hemisphere_is_a_warning(self):
+    def test_the_other_hemisphere_is_an_error(self):
         samples.write_surface("rh.white")
         samples.write_curv("lh.thickness")
-        self.warned("lh.thickness is of CortexLeft by its name, but rh.white is of CortexRight", "smooth",
-                    "rh.white", "lh.thickness", 5, "o.curv")
+        message = "lh.thickness: data of the left hemisphere by its name, but rh.white is of CortexRight; allowed: the "
+        self.refused(message + "same hemisphere, or any with --any-hemisphere", "smooth", "rh.white", "lh.thickness", 5,
+                     "o.curv")
+        self.refused(message, "distance", "rh.white", "lh.thickness", "d.npy")
+        self.succeed("smooth", "rh.white", "lh.thickness", 5, "o.curv", "--any-hemisphere")
         samples.write_surface("lh.white")
         self.succeed("smooth", "lh.white", "lh.thickness", 5, "o.curv")
+        samples.write_gifti("100307.R.thickness.32k_fs_LR.shape.gii", {"a": samples.NOISE}, "")
+        samples.write_surface("sub-1_hemi-L_space-fsLR_midthickness.surf.gii", structure="")
+        samples.write_surface("L.R.surf.gii", structure="")
+        words = ["smooth", "L.R.surf.gii", "100307.R.thickness.32k_fs_LR.shape.gii", 5, "o.shape.gii"]
+        self.succeed(*words)
+        words[1] = "sub-1_hemi-L_space-fsLR_midthickness.surf.gii"
+        self.refused("but sub-1_hemi-L_space-fsLR_midthickness.surf.gii is of the left hemisphere by its name", *words)
+        words[1] = samples.write_surface("R.surf.gii", structure="HippocampusLeft")
+        self.refused("data of the right hemisphere by its name, but R.surf.gii is of HippocampusLeft", *words)
+        words[2] = samples.write_gifti("R.func.gii", {"a": samples.NOISE}, "CortexLeft")
+        words[4] = "o.func.gii"
+        self.refused("R.func.gii: data of CortexLeft, but R.surf.gii is of HippocampusLeft; allowed: the same "
+                     "structure", *words, "--any-hemisphere")
+        samples.write_cifti("a.dscalar.nii", [np.tile(samples.NOISE, 2)])
+        words = ["smooth", "a.dscalar.nii", 5, "o.dscalar.nii", "--left", "rh.white", "--right", "lh.white"]
+        self.refused("--left: for CortexLeft, but rh.white is of CortexRight; allowed: the same hemisphere", *words)
+        self.succeed(*words, "--any-hemisphere")
+        self.refused("--surface HIPPOCAMPUS_RIGHT: for HippocampusRight, but lh.white is of CortexLeft", *words[:4],
+                     "--surface", "HIPPOCAMPUS_RIGHT", "lh.white")
+
+    def test_spheres_and_surfaces_of_another_scale_are_a_warning(self):
+        samples.write_gifti("L.shape.gii", {"a": samples.NOISE})
+        ball, bumps = 10 * POINTS, 10 * POINTS * (1 + 0.02 * np.sin(POINTS[:, :1]))
+        words = ["smooth", "x.surf.gii", "L.shape.gii", 50, "o.shape.gii"]
+        for points, text in ((ball + 7, "x.surf.gii is a sphere of radius 100: lengths and areas"), (bumps, ""),
+                             (8 * POINTS, ""),
+                             (bumps / 1000, "x.surf.gii is 0.2 long, and a cortex in mm 20 to 500: lengths"),
+                             (1000 * bumps, "x.surf.gii is 2e.05 long, and a cortex in mm 20 to 500")):
+            samples.write_surface("x.surf.gii", points)
+            words[3] = 0.5 * np.ptp(points)
+            if text:
+                self.warned(text, *words)
+            else:
+                self.succeed(*words)
+        image = nib.load(samples.write_surface("x.surf.gii", ball))
+        image.darrays[0].meta["GeometricType"] = "Anatomical"
+        nib.save(image, "x.surf.gii")
+        self.succeed(*words[:3], 50, "o.shape.gii")
+        samples.write_surface("x.surf.gii", bumps / 1000, structure="")
+        self.succeed(*words[:3], 0.05, "o.shape.gii")
 
     def test_lengths_on_shapes_that_are_none_of_the_brain_are_a_warning(self):
         samples.write_curv("lh.thickness")
@@ -342,7 +385,8 @@ class FreeSurfer(ForeignTest):
             samples.write_surface(name)
             self.warned(expected.format(name, shape), "smooth", name, "lh.thickness", 5, "o.curv")
             self.warned(expected.format(name, shape), "distance", name, "o.curv", "--from", 0)
-        for name, shape in (("L.sphere.32k_fs_LR.surf.gii", "spherical"), ("sub-01_hemi-L_inflated.surf.gii", "inflated")):
+        for name, shape in (("L.sphere.32k_fs_LR.surf.gii", "spherical"),
+                            ("sub-01_hemi-L_inflated.surf.gii", "inflated")):
             image = nib.load(samples.write_surface(name))
             image.darrays[0].meta.pop("GeometricType", None)
             nib.save(image, name)
@@ -414,7 +458,8 @@ class Sentences(ForeignTest):
         self.assertRegex(error, r"\Asurfacediffusion: b.off: .*\nsurfacediffusion: c.bin: .*\n\Z")
 
     def test_commands_of_workbench_are_answered_with_those_that_are_here(self):
-        for word, here in (("-cifti-gradient", "derivatives"), ("-metric-dilate", "inpaint, which fills by harmonic functions")):
+        for word, here in (("-cifti-gradient", "derivatives"),
+                           ("-metric-dilate", "inpaint, which fills by harmonic functions")):
             self.refused(f"^surfacediffusion: {word} is a command of Workbench .*; allowed: surfacediffusion "
                          f"{here}, or -metric-smoothing, -cifti-smoothing, -metric-resample", word, "a", "b", "c")
 

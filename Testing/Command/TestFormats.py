@@ -6,6 +6,8 @@ never silently read wrongly."""
 import gzip
 import os
 import struct
+import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -630,6 +632,20 @@ class GIFTI(FormatTest):
         self.write(name, '<?xml version="1.0"?>\n<GIFTI Version="1.0" NumberOfDataArrays="3">'
                    + "".join(arrays) + "</GIFTI>\n")
         return body
+
+    @unittest.skipIf("libasan" in os.environ.get("LD_PRELOAD", ""), "the sanitizer keeps freed memory")
+    def test_many_maps_are_in_memory_once(self):
+        values = np.random.default_rng(2).normal(size=(30000, 400)).astype(np.float32)
+        samples.write_gifti("a.func.gii", {f"map {i}": column for i, column in enumerate(values.T)})
+        code = ("import resource, nibabel.gifti; from surfacediffusion.files import read_data\n"
+                "peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+                "before = peak(); data = read_data('a.func.gii'); after = peak()\n"
+                "data.save('b.func.gii', [data.parts[0].values]); print(after - before, peak() - before)")
+        done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+        for kilobytes in map(int, done.stdout.split()):
+            self.assertLess(1024 * kilobytes, 1.5 * values.nbytes)
+        self.assertEqual(Path("a.func.gii").read_bytes(), Path("b.func.gii").read_bytes())
+        np.testing.assert_array_equal(read_data("b.func.gii").parts[0].values, values)
 
     def test_data_in_a_file_beside_it(self):
         for folder in (".", "sub"):

@@ -71,8 +71,8 @@ class Structures(WorkbenchTest):
             full[vertices] = self.rows[:, place[name]].T
             outside = np.ones(len(points), bool)
             outside[vertices] = False
-            found[:, place[name]] = heat(Surface(points, faces, area), full, fwhm=14.0, mask_mode="Exclude", number_of_time_steps=1,
-                                         mask=outside if outside.any() else None)[vertices].T
+            found[:, place[name]] = heat(Surface(points, faces, area), full, fwhm=14.0, mask_mode="Exclude",
+                                         number_of_time_steps=1, mask=outside if outside.any() else None)[vertices].T
         return found
 
     def smooth(self, *words):
@@ -111,8 +111,10 @@ class Structures(WorkbenchTest):
                 (f"{' '.join(SURFACES)} --areas l.shape.gii --areas CORTEX_LEFT l.shape.gii",
                  "--areas l.shape.gii: areas of a surface that has some"),
                 (f"{' '.join(SURFACES)} --surface CORTEX_LEFT l.surf.gii", "--surface CORTEX_LEFT and another surface"),
-                (" ".join(SURFACES).replace("d.surf", "h.surf"), f"a.dscalar.nii: {N} values per column, but "
-                 f"h.surf.gii has {len(FINE)} points"),
+                (" ".join(SURFACES).replace("d.surf", "h.surf"), "--surface HIPPOCAMPUS_DENTATE_RIGHT: for "
+                 "HippocampusDentateRight, but h.surf.gii is of HippocampusLeft; allowed: the same hemisphere"),
+                (" ".join(SURFACES).replace("d.surf", "h.surf") + " --any-hemisphere", f"a.dscalar.nii: {N} "
+                 f"values per column, but h.surf.gii has {len(FINE)} points"),
                 (f"{' '.join(SURFACES)} --areas THALAMUS_LEFT l.shape.gii", "areas of ThalamusLeft; allowed: of "
                  "CortexLeft, HippocampusLeft, HippocampusDentateRight, by --areas STRUCTURE FILE")):
             code, _, error = run("smooth", "a.dscalar.nii", 14, "o.dscalar.nii", *words.split())

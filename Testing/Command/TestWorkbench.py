@@ -155,7 +155,7 @@ class ResampledFiles(WorkbenchTest):
     def setUp(self):
         super().setUp()
         samples.write_surface("a.surf.gii")
-        samples.write_surface("b.surf.gii", *turned(3, 100.0))
+        samples.write_surface("b.surf.gii", *turned(3, 110.0))
         samples.write_gifti("a.func.gii", {"one": NOISE, "two": SMOOTH})
         samples.write_gifti("roi.func.gii", {"roi": POINTS[:, 2] > -3})
 
@@ -255,7 +255,7 @@ class SameResampling(WorkbenchTest):
         for level, other in ((3, 4), (4, 3)):
             points, faces = samples.sphere(level, 40.0)
             samples.write_surface("a.surf.gii", points, faces)
-            samples.write_surface("b.surf.gii", *turned(other, 100.0))
+            samples.write_surface("b.surf.gii", *turned(other, 110.0))
             noise = np.random.default_rng(level).normal(size=(2, len(points)))
             samples.write_gifti("a.func.gii", {"one": noise[0], "two": noise[1]})
             samples.write_gifti("roi.func.gii", {"roi": points[:, 0] > -20})

@@ -78,8 +78,8 @@ class SameAsWorkbench(WordsTest):
 
     def test_gradients_and_their_vectors(self):
         for words in ("", "-presmooth 4 -fwhm -roi roi.func.gii", "-presmooth 3 -column 2"):
-            for ours, theirs in self.both(f"-metric-gradient a.surf.gii a.func.gii @.func.gii -vectors @v.func.gii {words}",
-                                          "@.func.gii", "@v.func.gii"):
+            line = f"-metric-gradient a.surf.gii a.func.gii @.func.gii -vectors @v.func.gii {words}"
+            for ours, theirs in self.both(line, "@.func.gii", "@v.func.gii"):
                 self.close(ours, theirs, 0.08)
                 if "-roi" in words:
                     np.testing.assert_array_equal(ours[POINTS[:, 0] <= -10], 0)

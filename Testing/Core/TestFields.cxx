@@ -165,7 +165,7 @@ TEST(ResolventPolynomial, KeepsConstantsAndIntegralsOfComponents)
   for (const int order : { 1, 2 })
   {
     u = before;
-    MakeScaleFilter(assembler, Vector::Constant(u.rows(), 3.0), order).Apply(u);
+    ScaleFilter(assembler, Vector::Constant(u.rows(), 3.0), order).Apply(u);
     EXPECT_LT((u.col(0).array() / 1e6 - 1.0).abs().maxCoeff(), 1e-14);
     EXPECT_GT((u.col(1) - before.col(1)).norm(), 0.1 * Noise(mesh).norm());
     for (Index c = 0; c < mesh.NumberOfComponents(); ++c)
@@ -437,12 +437,53 @@ TEST(ScaleFilter, ScalesSphericalHarmonics)
         { return x[0] * x[1] * x[2] / (radius * radius * radius); }); // l = 3
       const double expected = 1.0 / (1.0 + 2.0 * std::pow(12.0 / std::pow(k * radius, 2), order));
       const Values exact = expected * u;
-      MakeScaleFilter(assembler, Vector::Constant(u.rows(), wavelength / mesh.LengthUnit()), order)
+      ScaleFilter(assembler, Vector::Constant(u.rows(), wavelength / mesh.LengthUnit()), order)
         .Apply(u);
       errors.push_back(RootMeanSquare(mesh, u - exact) / RootMeanSquare(mesh, exact));
     }
     EXPECT_LT(errors[1], 0.01);
     EXPECT_GT(ObservedOrder(errors[0], errors[1]), 1.9);
+  }
+}
+
+// By the recurrence and, where that would be longer, by the polynomial.
+TEST(ScaleFilter, OfOrderTwoIsThePolynomialOfSteps)
+{
+  const Testing::Surface s = Joined(Torus(40, 20), Moved(Disk(12), { 9.0, 0.0, 0.0 }));
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  Values f(mesh.NumberOfVertices(), 18);
+  f << Noise(mesh, 17), Vector::Constant(mesh.NumberOfVertices(), 1e6);
+  f.col(3) *= 1e-200;
+  const ThreadedFor threads(3);
+  for (const double edges : { 3.0, 7.0, 15.0, 3000.0 })
+  {
+    const Vector wavelengths = Vector::Constant(f.rows(), edges * mesh.MeanEdgeLength());
+    CornerWeights coefficients = CotanWeights(mesh);
+    const Vector diffusivities = ScaleFilterDiffusivities(mesh, wavelengths, 2);
+    for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
+    {
+      coefficients.row(t) *= diffusivities[t];
+    }
+    Values expected = f;
+    ResolventPolynomial(assembler, coefficients, 1.0, ScaleFilterSeries(2), MakeCholeskySolver())
+      .Apply(expected);
+    Values found = f;
+    ScaleFilter(assembler, wavelengths, 2, threads).Apply(found);
+    for (Index c = 0; c < f.cols(); ++c)
+    {
+      EXPECT_LT((found.col(c) - expected.col(c)).cwiseAbs().maxCoeff(),
+        2e-9 * f.col(c).cwiseAbs().maxCoeff())
+        << edges << " " << c;
+    }
+    Values alone = f.rightCols(2);
+    ScaleFilter(assembler, wavelengths, 2).Apply(alone);
+    EXPECT_EQ(alone, found.rightCols(2)) << edges;
+    SquareResolvent square(assembler, coefficients);
+    EXPECT_EQ(square.ExpectedIterations() < 500.0, edges < 100.0);
+    Values once = f;
+    EXPECT_TRUE(square.Apply(once)) << "within twice the expected iterations";
+    EXPECT_EQ(edges < 100.0, once == found);
   }
 }
 
@@ -471,7 +512,7 @@ TEST(ScaleFilter, SolvesItsEquationForWavelengthsThatDiffer)
   for (const int order : { 1, 2 })
   {
     Values u = f;
-    MakeScaleFilter(assembler, wavelengths, order).Apply(u);
+    ScaleFilter(assembler, wavelengths, order).Apply(u);
     const Values power = order == 1 ? laplace(u) : laplace(laplace(u));
     EXPECT_LT((u + 2.0 * power - f).norm(), 1e-6 * f.norm());
     EXPECT_LT(u.norm(), 0.5 * f.norm());

@@ -53,7 +53,8 @@ class ScaleFilter(unittest.TestCase):
     def test_other_dimensions_stay_where_they_are(self):
         values = RNG.normal(size=(2, HEXAGONS.n_faces, 3))
         found = scale_filter(Array(values, ("time", "face", "depth"), {"units": "K"}), 0.9, surface=HEXAGONS, order=2)
-        self.assertEqual((found.dims, found.attrs, found.shape), (("time", "face", "depth"), {"units": "K"}, values.shape))
+        self.assertEqual((found.dims, found.attrs, found.shape),
+                         (("time", "face", "depth"), {"units": "K"}, values.shape))
         for time in range(2):
             for depth in range(3):
                 np.testing.assert_allclose(found.values[time, :, depth],
@@ -68,7 +69,8 @@ class ScaleFilter(unittest.TestCase):
         found = scale_filter(Array(values, ("time", "n_face", "depth")), 0.9, surface=HEXAGONS).values
         np.testing.assert_array_equal(np.isnan(found), np.isnan(values))
         for depth in range(2):
-            np.testing.assert_allclose(found[1, :, depth], sd.scale_filter(HEXAGONS, values[1, :, depth], 0.9), atol=1e-12)
+            np.testing.assert_allclose(found[1, :, depth], sd.scale_filter(HEXAGONS, values[1, :, depth], 0.9),
+                                       atol=1e-12)
 
     def test_grids_of_uxarray_and_xugrid(self):
         lon, lat = degrees(HEXAGONS.points)
@@ -90,8 +92,8 @@ class ScaleFilter(unittest.TestCase):
 
     def test_what_is_not_allowed_is_named(self):
         for array, options, pattern in (
-                (Array(np.ones(7), ("x",)), {"surface": HEXAGONS}, "data has sizes x 7; allowed: a dimension of 642 faces "
-                 "or 1280 points"),
+                (Array(np.ones(7), ("x",)), {"surface": HEXAGONS}, "data has sizes x 7; allowed: a dimension of 642 "
+                 "faces or 1280 points"),
                 (Array(np.ones((642, 642)), ("a", "b")), {"surface": HEXAGONS}, "data has dimensions a and b of 642"),
                 (Array(np.ones(642), ("a",)), {"surface": HEXAGONS, "dim": "b"}, "dim is 'b'; allowed: a"),
                 (Array(np.ones(642), ("a",)), {}, "surface is not given, and 'Array' has none")):

@@ -8,7 +8,8 @@ import numpy as np
 from ..files import FileError, SurfaceFile, read_data, read_surface
 from ..files.cifti import word_of_structure
 from ..files.content import read_content
-from .inputs import ArgumentProblem, lengths_of, on_surface, surface_for
+from .inputs import ArgumentProblem, on_surface, surface_for
+from .surfaces import lengths_of
 
 
 def read_areas(paths, surfaces):

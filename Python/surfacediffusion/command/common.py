@@ -17,8 +17,9 @@ SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface",
          "-surface")
 
 #: What a run reads where a command has no such argument
-ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "structures": [], "faces": False, "areas": [],
-          "match_columns": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
+ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "structures": [], "faces": False,
+          "areas": [],
+          "match_columns": False, "any_hemisphere": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
 
 SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK."
 
@@ -35,7 +36,8 @@ FILES = f"""
 {SURFACES}
 """ + paragraph(
     "DATA: GIFTI (.func.gii, .shape.gii), CIFTI (.dscalar.nii, .dtseries.nii; give --left, --right, "
-    "--cerebellum and --surface STRUCTURE FILE instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), NumPy (.npy), text with "
+    "--cerebellum and --surface STRUCTURE FILE instead of SURFACE), FreeSurfer (curv, .mgh, .mgz, .nii.gz, .label), "
+    "NumPy (.npy), text with "
     "one number per line (.txt; # starts a comment), or a PLY or VTK file with data at its vertices; with "
     "--faces, where there is that option, at the faces. Files are recognised by their content, and may be "
     "compressed by gzip, or pipes. OUTPUT has the format and the metadata of DATA, and its name the extension "
@@ -106,6 +108,12 @@ def hemispheres(parser):
                         metavar=("STRUCTURE", "FILE"),
                         help="the surface of another structure, by Workbench's word, such as HIPPOCAMPUS_LEFT or "
                              "HIPPOCAMPUS_DENTATE_RIGHT; can be repeated")
+    any_hemisphere(parser)
+
+
+def any_hemisphere(parser):
+    parser.add_argument("--any-hemisphere", "-any-hemisphere", action="store_true",
+                        help="take data and surfaces of different hemispheres, too")
 
 
 def surface_and_data(parser, many=False):
@@ -113,6 +121,7 @@ def surface_and_data(parser, many=False):
         hemispheres(parser)
     else:
         mesh(parser)
+        any_hemisphere(parser)
     parser.add_argument("data", metavar="DATA", nargs="+" if many else None,
                         help="the values at its vertices"
                              + "; several files, if OUTPUT is a folder" * many)
@@ -189,7 +198,7 @@ def coordinates(parser, which):
     """Of which points the coordinates are given."""
     parser.add_argument("--ras", choices=("tkr", "scanner"), default="tkr",
                         help=f"the coordinates of {which}: tkr: those of SURFACE (default); scanner: larger by "
-                             "FreeSurfer's c_ras, which is in the file of SURFACE")
+                             "FreeSurfer's c_ras, or by the transform of GIFTI, which is in the file of SURFACE")
 
 
 # ---- numbers -------------------------------------------------------------------------------------

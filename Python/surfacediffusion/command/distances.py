@@ -33,6 +33,7 @@ def add_distance(commands):
                              "of its own")
     common.output(parser, "the distances, values at the vertices")
     common.coordinates(parser, "PLACE")
+    common.any_hemisphere(parser)
     parser.add_argument("--from", dest="starts", metavar="PLACE", action="append", type=values.place,
                         help="in place of SOURCES: the number of a vertex, from 0, or x,y,z, which "
                              "stands for the nearest place of the surface; may be given several times")
@@ -101,13 +102,15 @@ def add_path(commands):
         "Find the shortest path on a surface from one place to another, by way of others if they are given. It "
         "is straight over the faces.",
         ["scan.ply rim.vtk --from 1041 --to=-3.5,20,4", "part.stl loop.npy --from 12 --by 80 --to 143 --closed"],
-        "\nOUTPUT: the points of the path, as rows of x, y, z (.npy) or a line for ParaView (.vtk).\n")
+        "\nOUTPUT: the points of the path, in the coordinates of SURFACE, as rows of x, y, z (.npy) or a line for "
+        "ParaView (.vtk).\n")
     common.mesh(parser)
     common.output(parser, "the path")
     for option, what in (("--from", "where it begins"), ("--to", "where it ends")):
         parser.add_argument(option, dest=option[2:] + "_", metavar="PLACE", type=values.place, required=True,
                             help=what + ": the number of a vertex, from 0, or x,y,z, which stands for the "
                                         "nearest place of the surface")
+    common.coordinates(parser, "PLACE")
     parser.add_argument("--by", metavar="PLACE", action="append", type=values.place, default=[],
                         help="a place between; may be given several times")
     parser.add_argument("--closed", action="store_true", help="lead back to the begin")
@@ -123,6 +126,8 @@ def path(arguments, report):
         if isinstance(place, int) and place >= len(surface.points):
             raise inputs.ArgumentProblem(f"a place is {place}; allowed: 0 to {len(surface.points) - 1}, the "
                                          f"vertices of {surface.path}, or x,y,z")
+    places = [place if isinstance(place, int) else inputs.to_surface(arguments, surface, place, report)
+              for place in places]
     with report.working("Path") as progress:
         found = path_through(surface.solver, places, closed=arguments.closed, progress=progress)
     report.facts.update(length=number(found.length), points=len(found.points))
@@ -183,6 +188,7 @@ def add_derivatives(commands):
     parser.add_argument("--quantity", default="gradient",
                         choices=("gradient", "divergence", "curl", "laplacian", "velocity"),
                         help="what to compute (default: gradient); velocity: grad T/|grad T|^2")
+    common.any_hemisphere(parser)
     common.fwhm(parser, " that smooths DATA first", "0")
     common.merge(parser)
 

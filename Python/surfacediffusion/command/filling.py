@@ -64,6 +64,7 @@ def add_interpolate(commands):
         ["atrium.vtp electrodes.csv times.vtp --error errors.npy",
          "lh.pial.surf.gii implants.txt map.shape.gii --exact"], POINTS)
     common.mesh(parser)
+    common.any_hemisphere(parser)
     parser.add_argument("values", metavar="VALUES", help="the values, with their points or at vertices")
     common.output(parser, "the map, values at the vertices")
     level = parser.add_mutually_exclusive_group()
@@ -111,8 +112,8 @@ def interpolate(arguments, report):
             correlation_length=arguments.length or 0.0, boundary="Natural" if arguments.flat else "Automatic",
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
             missing_value=arguments.missing_value,
-            compute_error=errors is not None, robust=arguments.robust, progress=progress, **given(smoothing=arguments.smoothing),
-            **common.merging(arguments))
+            compute_error=errors is not None, robust=arguments.robust, progress=progress,
+            **given(smoothing=arguments.smoothing), **common.merging(arguments))
     is_tkr = places is not None and arguments.ras == "tkr" and surface.center.any()
     if is_tkr and result.median_distance > result.mean_edge_length:
         report.warn(f"{surface.path} has FreeSurfer's coordinates, and points in the scanner's are larger by its "
@@ -125,7 +126,8 @@ def interpolate(arguments, report):
                   "degrees_of_freedom": number(freedom), "noise": number(noise)}
                  for name, (mu, misfit, freedom, noise) in zip(names, rows)])
     if arguments.robust:
-        report.facts["outliers"] = np.flatnonzero(result.outliers.reshape(len(result.outliers), -1).any(axis=1)).tolist()
+        outliers = result.outliers.reshape(len(result.outliers), -1)
+        report.facts["outliers"] = np.flatnonzero(outliers.any(axis=1)).tolist()
     with report.timed("write"):
         target.save(arguments.output, [result.values.astype(np.float32)])
         if errors is not None:

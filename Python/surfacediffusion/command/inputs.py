@@ -5,16 +5,16 @@ from __future__ import annotations
 
 import os
 import re
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
 from .._surface import Surface
-from ..files import Data, FileError, Part, SurfaceFile, read_data, read_surface
+from ..files import Data, FileError, Part, SurfaceFile, read_data
 from ..files.cifti import structure_of_word, word_of_structure
 from ..files.data import NO_VERTICES
-from ..files.surface import structure_of_name
+from .surfaces import open_surface, require_same_hemisphere, require_same_structure
+from .tables import read_table
 
 
 #: The options that name the surface of a structure
@@ -50,7 +50,8 @@ class Patch:
 
     def to_part(self, values):
         """The rows of the part. Outside the region the values are 0."""
-        values = np.where(self.excluded.reshape(len(values), -1), 0, values)
+        if self.excluded.any():
+            values = np.where(self.excluded.reshape(len(values), -1), 0, values)
         return values if self.part.vertices is None else values[self.part.vertices]
 
 
@@ -102,15 +103,6 @@ def read_surfaces(arguments):
     return arguments.surfaces
 
 
-def lengths_of(surface: SurfaceFile):
-    """The surface, with a warning if lengths on it are none of the brain."""
-    if surface.geometry in ("spherical", "flat", "inflated", "very_inflated", "ellipsoid"):
-        warnings.warn(f"{surface.path} is {surface.geometry.replace('_', ' ')}: lengths and areas on it are not "
-                      "those of the brain; give an anatomical surface, such as white, midthickness or pial",
-                      stacklevel=2)
-    return surface
-
-
 def make_solver(arguments, surface: SurfaceFile, areas):
     """The surface for functions of the package, with the areas that were given for it or None. It is made
     once for many files, and keeps its factors."""
@@ -127,21 +119,19 @@ def make_solver(arguments, surface: SurfaceFile, areas):
 
 def _read_surfaces(arguments):
     if arguments.surface is not None:
-        return {"": lengths_of(read_surface(arguments.surface))}
+        return {"": open_surface(arguments, arguments.surface)}
     surfaces = {}
     for side, structure in SIDES.items():
         path = getattr(arguments, side)
         if path is not None:
-            surface = lengths_of(read_surface(path))
-            if surface.structure in SIDES.values() and surface.structure != structure:
-                raise FileError(f"{path}: a surface of {surface.structure}; allowed for --{side}: "
-                                f"{structure}")
-            surfaces[structure] = surface
+            surfaces[structure] = open_surface(arguments, path)
+            require_same_structure(surfaces[structure], structure, f"--{side}", "for")
     for word, path in arguments.structures:
         structure = structure_of_word(word)
         if structure in surfaces:
             raise ArgumentProblem(f"--surface {word} and another surface of {structure}; allowed: one of them")
-        surfaces[structure] = lengths_of(read_surface(path))
+        surfaces[structure] = open_surface(arguments, path)
+        require_same_hemisphere(surfaces[structure], structure, f"--surface {word}", "for")
     return surfaces
 
 
@@ -149,18 +139,22 @@ def to_surface(arguments, surface, places, report):
     """Points in the coordinates of the surface; they are given in those of --ras."""
     if arguments.ras == "tkr":
         return places
-    if not surface.center.any():
-        raise ArgumentProblem(f"--ras scanner with {surface.path}, which has no c_ras; allowed: surfaces of FreeSurfer, "
-                              "or of GIFTI with VolGeomC_R, VolGeomC_A and VolGeomC_S")
-    report.facts.update(ras="scanner", c_ras=[float(x) for x in surface.center])
-    return np.asarray(places, dtype=float) - surface.center
+    matrix = surface.to_scanner
+    if matrix is None:
+        raise ArgumentProblem(
+            f"--ras scanner with {surface.path}, which has no c_ras; allowed: surfaces of FreeSurfer, or of GIFTI with "
+            "VolGeomC_R, VolGeomC_A and VolGeomC_S or a transform to NIFTI_XFORM_SCANNER_ANAT")
+    report.facts.update(ras="scanner", to_scanner=matrix.tolist())
+    if surface.center.any():
+        report.facts.update(c_ras=[float(x) for x in surface.center])
+    return (np.asarray(places, dtype=float) - matrix[:3, 3]) @ np.linalg.inv(matrix[:3, :3]).T
 
 
 def read_values(path, surface, tables=True):
     """The values of a file or its Content: places (p, 3) or None, values (p, k) or (n, k), NaN where the file
     has none, and the names of the columns. tables: whether places with values are allowed; otherwise they are
     at the vertices."""
-    table = _read_table(path) if tables else None
+    table = read_table(path) if tables else None
     if table is not None:
         rows, names = table
         return rows[:, :3], rows[:, 3:], names
@@ -173,58 +167,6 @@ def read_values(path, surface, tables=True):
     values, absent = on_surface(part, part.values[:, columns].astype(float), surface, data)
     values[absent] = np.nan
     return None, values, [data.names[c] for c in columns]
-
-
-def _read_table(path):
-    """The rows x, y, z, value, ... of a text file, in this order, and the names of the values; None if it is
-    none."""
-    if not re.search(r"\.(csv|tsv|txt)$", path, re.IGNORECASE):
-        return None
-    try:
-        with open(path, encoding="utf-8-sig") as file:
-            lines = [line.strip() for line in file]
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or 'no text'}") from error
-    rows, names = [], []
-    for i, line in enumerate(lines, start=1):
-        if not line or line.startswith("#"):
-            continue
-        separator = "," if "," in line else ";" if ";" in line else "\t" if "\t" in line else None
-        words = [word.strip().strip('"') for word in line.split(separator)]
-        try:
-            row = [float(word) if word else np.nan for word in words]
-        except ValueError:
-            if rows or names:
-                raise FileError(f"{path}: line {i} is {line[:40]!r}; allowed: numbers x, y, z, value"
-                                ) from None
-            names = words
-            continue
-        if len(row) == 1 and not rows and not names:  # a value for each vertex
-            return None
-        width = len(rows[0]) if rows else len(names) or len(row)
-        if len(row) != width or width < 4:
-            raise FileError(f"{path}: line {i} has {len(row)} numbers; allowed: x, y, z and as many "
-                            "values as the other lines, one or more")
-        rows.append(row)
-    if not rows:
-        raise FileError(f"{path}: no row of numbers; allowed: rows x, y, z, value")
-    order = _order_of_columns(path, names) if names else list(range(len(rows[0])))
-    return np.array(rows)[:, order], [names[c] for c in order[3:]] if names else [
-        f"Value{k + 1}" for k in range(len(rows[0]) - 3)]
-
-
-def _order_of_columns(path, names):
-    """The columns of the coordinates and then the others: those named x, y, z, or Points:0, Points:1,
-    Points:2 as ParaView writes them; the first three if no name is one of these."""
-    short = [re.sub(r"^points[:_]([012])$", lambda found: "xyz"[int(found[1])], name.lower()) for name in names]
-    counts = [short.count(axis) for axis in "xyz"]
-    if not any(counts):
-        return list(range(len(names)))
-    if counts != [1, 1, 1]:
-        raise FileError(f"{path}: the line of names has {', '.join(names)}; allowed: each of x, y, z once, or "
-                        "none of them if they are the first three")
-    places = [short.index(axis) for axis in "xyz"]
-    return places + [c for c in range(len(names)) if c not in places]
 
 
 def choose_columns(data: Data, choices):
@@ -262,7 +204,8 @@ def make_patches(surfaces, data: Data, columns, arguments, labels=False):
     patches = []
     for part in data.parts:
         surface = surface_for(part, surfaces, data)
-        values = np.array(part.values[:, columns], order="C", dtype=_float_type(part.values))
+        every = list(columns) == list(range(part.values.shape[1]))
+        values = np.array(part.values if every else part.values[:, columns], order="C", dtype=_float_type(part.values))
         require_finite(values, data, part, columns)
         if arguments.fix_zeros:
             values[values == 0] = np.nan
@@ -364,13 +307,7 @@ def surface_for(part, surfaces, data):
         structures = " and ".join(p.structure for p in data.parts)
         raise ArgumentProblem(f"{data.path} has data of {structures}; give --left and --right "
                               "instead of SURFACE")
-    if part.structure and surface.structure and part.structure != surface.structure:
-        raise FileError(f"{data.path}: data of {part.structure}, but {surface.path} is of "
-                        f"{surface.structure}; allowed: the same structure")
-    side = structure_of_name(data.path)
-    if side and not part.structure and surface.structure and side != surface.structure:
-        warnings.warn(f"{data.path} is of {side} by its name, but {surface.path} is of {surface.structure}",
-                      stacklevel=2)
+    require_same_structure(surface, part.structure, data.path, "data of", data.path)
     return surface
 
 

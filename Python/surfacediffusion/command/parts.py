@@ -6,7 +6,7 @@ from __future__ import annotations
 from .. import refine as bisect
 from .. import turing_texture
 from .._refinement import MAXIMUM_TRIANGLES
-from ..files import new_data, read_surface
+from ..files import new_data
 from ..files.content import check_output_folder
 from ..files.export import UNITS, export, kind_of_export, places_in_file
 from . import common, flat, inputs, solids, values
@@ -14,6 +14,7 @@ from .printing import MAXIMUM_TRIANGLES_OF_PARTS, PATTERNS, edge_of_triangles, i
 from .printing import is_for_printing, print_texture, reaction_of_pattern, unit_of
 from .report import number
 from .stages import given, read_surface_for_output, require_array, write_array, write_new
+from .surfaces import open_surface
 
 REFINE = """
 The name of OUTPUT gives its format: .ply, .off, .obj, .stl or .3mf. NEW is .npy: a row per vertex of OUTPUT,
@@ -38,6 +39,7 @@ def add_refine(commands):
         "flat faces stay flat, sharp edges sharp, and data and colours at the vertices go along.",
         ["part.ply 0.5 fine.ply --data load.npy fine.npy"], REFINE)
     common.mesh(parser)
+    common.any_hemisphere(parser)
     parser.add_argument("length", metavar="LENGTH", type=values.positive,
                         help="the length of the longest edge allowed, in the unit of the coordinates")
     common.output(parser, "the surface with shorter edges")
@@ -55,7 +57,7 @@ def refine(arguments, report):
     for _, new in arguments.data:
         require_array(new, "data of the new vertices")
     with report.timed("read"):
-        surface = read_surface(arguments.surface)
+        surface = open_surface(arguments, arguments.surface, lengths=False)
         shortest = edge_of_triangles(surface.solver, MAXIMUM_TRIANGLES)
         if arguments.maximum_triangles is None and arguments.length < shortest:
             raise inputs.ArgumentProblem(

@@ -6,12 +6,13 @@ from __future__ import annotations
 import numpy as np
 
 from .. import Resampler
-from ..files import FileError, read_data, read_surface
+from ..files import FileError, read_data
 from ..files.content import check_output_folder
 from ..files.data import data_for, new_data
 from . import common, inputs
 from .areas import read_areas_or_surface
 from .report import counted
+from .surfaces import open_surface
 
 #: The methods by their names in Workbench
 WORKBENCH_METHODS = {"ADAP_BARY_AREA": "AdaptiveBarycentricArea", "BARYCENTRIC": "Barycentric"}
@@ -51,6 +52,7 @@ def add_resample(commands):
     parser.add_argument("--roi", metavar="FILE",
                         help="use values inside this region of SOURCE-SPHERE alone, where its first column is "
                              "above 0, or FILE:LABEL; where none has a weight, OUTPUT is 0")
+    common.any_hemisphere(parser)
     common.zeros_and_columns(parser)
     parser.set_defaults(valid=None)
 
@@ -78,6 +80,7 @@ def add_metric_resample(commands):
                         help="write 1 where a value has a weight, and 0 elsewhere")
     parser.add_argument("-largest", action="store_true",
                         help="not here: wb_command has it, and resample --labels what labels need")
+    common.any_hemisphere(parser)
     parser.set_defaults(labels=False, fix_zeros=False, column=[])
 
 
@@ -97,7 +100,8 @@ def resample(arguments, report, empty=np.nan):
     for path in filter(None, (arguments.output, arguments.valid)):
         check_output_folder(path)
     with report.timed("read"):
-        source, target = (read_surface(path) for path in (arguments.source, arguments.target))
+        source, target = (open_surface(arguments, path, lengths=False)
+                          for path in (arguments.source, arguments.target))
         _check_structures(source, target)
         areas = [read_areas_or_surface(path, sphere) for path, sphere in (
             (arguments.source_areas, source), (arguments.target_areas, target))]

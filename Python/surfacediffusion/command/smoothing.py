@@ -177,7 +177,8 @@ def _check_options(arguments, content):
     voxels = ("--surface-only", "--volume-fwhm", "--merged-volume")
     if arguments.to_fwhm:
         inputs.refuse(arguments, ["--faces"], "with --to-fwhm", "data at vertices")
-        inputs.refuse(arguments, ["--merge", "--merge-tolerance", "--steps", "--mass-matrix", *voxels], "with --to-fwhm", "one of them")
+        inputs.refuse(arguments, ["--merge", "--merge-tolerance", "--steps", "--mass-matrix", *voxels],
+                      "with --to-fwhm", "one of them")
     else:
         inputs.refuse(arguments, ["--residuals"], "without --to-fwhm", "both")
     if content.kind == "cifti":

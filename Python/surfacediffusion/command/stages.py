@@ -9,12 +9,13 @@ import io
 import numpy as np
 
 from .._run import part_of
-from ..files import FileError, new_data, read_data, read_surface, vtk_files, write_atomically
+from ..files import FileError, new_data, read_data, vtk_files, write_atomically
 from ..files.content import check_output_folder, check_range, kind_of_name
 from . import common, inputs
 from .areas import face_areas, read_areas, vertex_areas
 from .inputs import choose_columns, make_patches, read_surfaces
 from .report import counted, number
+from .surfaces import open_surface
 
 # ---- new values of the data ----------------------------------------------------------------------
 
@@ -152,9 +153,7 @@ def read_surface_for_output(arguments, report, lengths=False, weld=True):
     """lengths: whether the result is in millimetres. weld: see read_surface()."""
     check_output_folder(arguments.output)
     with report.timed("read"):
-        surface = read_surface(arguments.surface, weld)
-        if lengths:
-            inputs.lengths_of(surface)
+        surface = open_surface(arguments, arguments.surface, lengths, weld)
     report.facts.update(surface=arguments.surface, output=arguments.output)
     return surface
 

@@ -8,13 +8,14 @@ import numpy as np
 
 from .. import curvature as measure_curvature
 from .. import distance, estimate_fwhm, gradient, heat
-from ..files import new_data, read_surface
+from ..files import new_data
 from ..files.content import check_output_folder
 from . import common, inputs, values
 from .areas import read_areas, vertex_areas
 from .report import counted, number, number_text
 from .smoothing import SIGMA_TO_FWHM
 from .stages import read, read_surface_for_output, write_new
+from .surfaces import open_surface
 
 
 def add_metric_gradient(commands):
@@ -111,7 +112,7 @@ def surface_curvature(arguments, report):
     for path, _ in outputs:
         check_output_folder(path)
     with report.timed("read"):
-        surface = inputs.lengths_of(read_surface(arguments.surface))
+        surface = open_surface(arguments, arguments.surface)
         targets = [new_data(surface, path, [name]) for path, name in outputs]
     with report.working("Curvature") as progress:
         found = measure_curvature(surface.solver, progress=progress)

@@ -15,6 +15,7 @@ import struct
 import tempfile
 import warnings
 import zlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,13 +24,15 @@ NAMES = {
     "gifti": "GIFTI", "cifti": "CIFTI", "nifti": "NIfTI", "mgh": "FreeSurfer mgh",
     "freesurfer": "FreeSurfer surface", "asc": "FreeSurfer asc", "curv": "FreeSurfer curv",
     "label": "FreeSurfer label", "annot": "FreeSurfer annot", "off": "OFF", "obj": "OBJ", "ply": "PLY",
-    "stl": "STL", "3mf": "3MF", "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid", "npy": "NumPy npy", "text": "text",
+    "stl": "STL", "3mf": "3MF", "vtk": "VTK legacy", "vtp": "VTK XML", "vtu": "VTK XML grid",
+    "npy": "NumPy npy", "text": "text",
 }
 
 # The ends of names by which an output that is named like another format, or like none, is noticed.
 EXTENSIONS = {
     ".gii": "gifti", ".mgh": "mgh", ".mgz": "mgh", ".label": "label", ".asc": "asc", ".off": "off", ".obj": "obj",
-    ".ply": "ply", ".stl": "stl", ".3mf": "3mf", ".vtk": "vtk", ".vtp": "vtp", ".vtu": "vtu", ".npy": "npy", ".nii": "nifti",
+    ".ply": "ply", ".stl": "stl", ".3mf": "3mf", ".vtk": "vtk", ".vtp": "vtp", ".vtu": "vtu",
+    ".npy": "npy", ".nii": "nifti",
     ".annot": "annot", ".txt": "text",
 }
 
@@ -38,6 +41,9 @@ _NAMED_FREELY = ("curv", "freesurfer")
 
 # Formats that store single precision, also if the input is double
 _SINGLE = ("gifti", "cifti", "curv", "mgh", "nifti", "freesurfer", "stl")
+
+#: Of larger files of GIFTI the first bytes
+_HEAD = 1 << 20
 
 # CIFTI names say what the rows are: .dscalar.nii, .dtseries.nii, ...
 _CIFTI_NAME = re.compile(r"\.([dp][a-z]+)\.nii$")
@@ -49,7 +55,7 @@ class FileError(ValueError):
 
 @dataclass
 class Content:
-    """partial: `bytes` are the beginning alone, since the file is large and on disk."""
+    """partial: `bytes` are the beginning alone, since the file may be large and is on disk."""
 
     path: str
     bytes: bytes
@@ -71,7 +77,11 @@ def read_content(path) -> Content:
         with open(path, "rb") as file:
             if _is_cifti_on_disk(file):
                 return Content(path, b"", "cifti", partial=True)
-            data = file.read()
+            data = file.read(_HEAD)
+            if len(data) == _HEAD:
+                if stat.S_ISREG(os.fstat(file.fileno()).st_mode) and _find_xml_kind(data) == "gifti":
+                    return Content(path, data, "gifti", partial=True)
+                data += file.read()
     except OSError as error:
         raise FileError(f"{path}: cannot be read: {error.strerror}") from error
     if data[:2] == b"\x1f\x8b":
@@ -301,7 +311,9 @@ def check_output_name(path, kind, rows=""):
 
 def check_range(path, kind, arrays, what, single=False):
     """Raises FileError if the format has no such numbers. single: whether it holds single precision here."""
-    largest = max((np.abs(array).max(initial=0, where=np.isfinite(array)) for array in arrays), default=0)
+    blocks = (block for array in map(np.atleast_1d, arrays)
+              for block in np.array_split(array, 1 + (array.size >> 20)))
+    largest = max((np.abs(block).max(initial=0, where=np.isfinite(block)) for block in blocks), default=0)
     if (single or kind in _SINGLE) and largest > np.finfo(np.float32).max:
         raise FileError(f"{path}: a {what} is {largest:.3g}; allowed in {NAMES[kind]}: less than 3.4e38")
 
@@ -325,13 +337,16 @@ def check_output_folder(path):
         raise FileError(f"{path}: cannot be written: no permission to write in {folder}")
 
 
-def write_atomically(path, data: bytes):
-    """Writes `data`, compressed if the name ends in .gz or .mgz. The output appears complete or
+def write_atomically(path, data: bytes | Iterable[bytes]):
+    """Writes `data`, or all of them one after the other, compressed if the name ends in .gz or .mgz. The output appears complete or
     not at all."""
+    parts = [data] if isinstance(data, bytes) else data
     if is_compressed(path):
-        data = gzip.compress(data, 1, mtime=0)  # as nibabel: floats hardly shrink more
+        data = b"".join(parts)
+        parts = [gzip.compress(data, 1, mtime=0)]  # as nibabel: floats hardly shrink more
     with writing_atomically(path) as temporary, open(temporary, "wb") as file:
-        file.write(data)
+        for part in parts:
+            file.write(part)
 
 
 def is_compressed(path):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -194,7 +194,7 @@ def _read_gifti(content):
                             "per value")
     names = [gifti_data.name(image, column) for column in columns]
     return Data(content.path, content.kind, names,
-                [Part(np.column_stack(arrays), vertices, structure=structure)] if arrays else [],
+                [Part(gifti_data.stacked(arrays), vertices, structure=structure)] if arrays else [],
                 labels=gifti_data.has_labels(image), label_names=gifti_data.label_names(image),
                 image=(image, columns))
 
@@ -394,7 +394,7 @@ class _Format:
     """The functions that read, write and create files of one format; None: not supported."""
 
     read: Callable[[Content], Data]
-    write: Callable[[Data, Any, list[int]], bytes] | None = None
+    write: Callable[[Data, Any, list[int]], bytes | Iterable[bytes]] | None = None
     save: Callable[[Any, Data, Any, list[int]], None] | None = None  #: where memory is too small for that
     new: Callable[[Any, Sequence[str]], Any] | None = None
     on_faces: bool = False  #: files can have data at faces

@@ -42,10 +42,20 @@ def read_image(content):
             if not os.path.isfile(os.path.join(os.path.dirname(file.name), other)):
                 raise content.error(f"there is no file {other} with its data in the same folder")
 
-    file = io.BytesIO(content.bytes)
-    file.name = os.path.abspath(content.path)  # in whose folder the parser looks
+        def EndElementHandler(self, name):
+            super().EndElementHandler(name)
+            if name == "DataArray":
+                columns.keep(self.img.darrays[-1], getattr(self, "expected_numDA", 0))
+
+    columns = _Columns()
     parser = Parser()
-    parser.parse(fptr=file)
+    if content.partial:
+        file = open(os.path.abspath(content.path), "rb")
+    else:
+        file = io.BytesIO(content.bytes)
+        file.name = os.path.abspath(content.path)  # in whose folder the parser looks
+    with file:
+        parser.parse(fptr=file)
     for array in parser.img.darrays:
         if array.encoding == _EXTERNAL:
             array.data = np.array(array.data)
@@ -60,6 +70,39 @@ def read_image(content):
                 array.data.size == 0 or -2**31 <= array.data.min() <= array.data.max() < 2**31):
             array.datatype = _INT32
     return parser.img
+
+
+class _Columns:
+    """The arrays of single precision, one number per vertex, as rows of one block: many of them are in memory
+    once."""
+
+    def __init__(self):
+        self.block = None
+        self.count = 0
+
+    def keep(self, array, expected):
+        """expected: the number of arrays, as the file has it."""
+        data = array.data
+        if data is None or data.ndim != 1 or data.dtype != np.float32 or array.encoding == _EXTERNAL:
+            return
+        if self.block is None and 1 < expected < 1 << 24 and data.size:
+            try:
+                self.block = np.empty((expected, len(data)), np.float32)
+            except MemoryError:
+                return
+        if self.block is not None and self.count < len(self.block) and len(data) == self.block.shape[1]:
+            self.block[self.count] = data
+            array.data = self.block[self.count]
+            self.count += 1
+
+
+def stacked(arrays):
+    """The arrays of one length as columns; without a copy if they are the rows of a block."""
+    block = arrays[0].base
+    if isinstance(block, np.ndarray) and block.ndim == 2 and len(arrays) <= len(block) and all(
+            array.base is block and array.ctypes.data == row.ctypes.data for array, row in zip(arrays, block)):
+        return block[:len(arrays)].T
+    return np.column_stack(arrays)
 
 
 def _check_dimensions(attributes):
@@ -122,13 +165,29 @@ def label_names(image):
 
 
 def write(image, places, values):
-    """The image with these columns alone, and new values in them."""
+    """The parts of a file with these columns of the image alone, and new values in them."""
+    from nibabel import gifti
+
+    written = {i for i, _ in places}.union(i for i, array in enumerate(image.darrays) if array.intent == _INDEX_INTENT)
     changed = copy.copy(image)
     changed.darrays = []
+    begin, end, _ = changed.to_bytes().rpartition(b"</GIFTI>")
+    yield begin.replace(b'NumberOfDataArrays="0"', b'NumberOfDataArrays="%d"' % len(written), 1)
+    for array in _changed_arrays(image, places, values):
+        content = gifti.GiftiImage(darrays=[array]).to_bytes()
+        yield content[content.index(b"<DataArray"):content.rindex(b"</GIFTI>")]
+    yield end
+
+
+def _changed_arrays(image, places, values):
+    """Each array of write()."""
+    columns = {}
+    for c, (i, _) in enumerate(places):
+        columns.setdefault(i, []).append(c)
     for i, array in enumerate(image.darrays):
-        chosen = [c for c, (k, _) in enumerate(places) if k == i]
+        chosen = columns.get(i)
         if array.intent == _INDEX_INTENT:
-            changed.darrays.append(array)
+            yield array
         if not chosen:
             continue
         array = copy.copy(array)
@@ -137,8 +196,7 @@ def write(image, places, values):
         array.data = data[:, 0] if image.darrays[i].data.ndim == 1 else data
         array.dims = list(array.data.shape)
         array.datatype = _INT32 if are_labels else _FLOAT32
-        changed.darrays.append(array)
-    return changed.to_bytes()
+        yield array
 
 
 def without_numbers(image, places):

@@ -20,6 +20,8 @@ from .content import write_atomically
 
 ALLOWED = "GIFTI (.surf.gii), FreeSurfer, OFF, OBJ, PLY, STL, 3MF, VTK"
 
+_SCANNER = 1  # NIFTI_XFORM_SCANNER_ANAT
+
 #: What the names of FreeSurfer's files say
 _SHAPES = {"inflated": "inflated", "sphere": "spherical", "flat": "flat"}
 
@@ -37,6 +39,8 @@ class SurfaceFile:
     faces : ndarray, shape (m, 3), or list of polygons
     structure : str
         As GIFTI has it ("CortexLeft"); empty if unknown.
+    any_hemisphere : bool
+        Data of the other hemisphere are allowed.
     """
 
     path: str
@@ -45,6 +49,7 @@ class SurfaceFile:
     faces: Any
     structure: str = ""
     image: Any = field(default=None, repr=False)  # what the reader returned
+    any_hemisphere: bool = False
 
     @property
     def geometry(self):
@@ -82,6 +87,21 @@ class SurfaceFile:
             return np.array(given, dtype=float)
         except ValueError:
             return np.zeros(3)
+
+    @property
+    def to_scanner(self):
+        """The matrix (4, 4) from the surface's coordinates to the scanner's; None if the file does not say it."""
+        if self.kind == "gifti":
+            system = self.image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")[0].coordsys
+            if system is not None and system.dataspace == _SCANNER:
+                return np.eye(4)
+            if system is not None and system.xformspace == _SCANNER and abs(np.linalg.det(system.xform)) > 0:
+                return np.asarray(system.xform, dtype=float)
+        if not self.center.any():
+            return None
+        matrix = np.eye(4)
+        matrix[:3, 3] = self.center
+        return matrix
 
     def beside(self):
         """The colours of the vertices (n, 3) of uint8, or None, and the names of what else the file has

@@ -19,7 +19,7 @@ CellScaleFilter::CellScaleFilter(std::shared_ptr<const Assembler> assembler, con
   , Transfer(assembler->Mesh(), cells, count, parallel)
   , Fluxes(assembler->Mesh(), points, cells, count, parallel)
   , Components(assembler->Mesh(), this->Transfer, parallel)
-  , OfVertices(MakeScaleFilter(assembler, wavelengths, order, parallel))
+  , OfVertices(assembler, wavelengths, order, parallel)
   , Series(ScaleFilterSeries(order))
 {
   const Vector& areas = this->CellAreas();

@@ -13,7 +13,7 @@
 namespace SurfaceDiffusion
 {
 
-/// The filter of MakeScaleFilter(), p(Y) with the resolvent Y, of data f on cells. With the transfer
+/// The ScaleFilter, p(Y) with the resolvent Y, of data f on cells. With the transfer
 /// P from cells to vertices and P* back it is
 ///
 ///     P* p(Y) P f + p(Z) d,   d = f - P* P f,   Z = (A + L)^-1 A,
@@ -24,7 +24,7 @@ namespace SurfaceDiffusion
 class CellScaleFilter
 {
 public:
-  /// points, cells, count: see CellFluxes. wavelengths, order: see MakeScaleFilter(). All references
+  /// points, cells, count: see CellFluxes. wavelengths, order: see ScaleFilter. All references
   /// must outlive it.
   CellScaleFilter(std::shared_ptr<const Assembler> assembler, const Points& points,
     const std::vector<Index>& cells, Index count, const Vector& wavelengths, int order,
@@ -47,7 +47,7 @@ private:
   CellTransfer Transfer;
   CellFluxes Fluxes;
   CellComponents Components;
-  ResolventPolynomial OfVertices;
+  ScaleFilter OfVertices;
   std::vector<double> Series;
   SparseMatrix Matrix; ///< A + L
   std::shared_ptr<LinearSolver> Solver;

@@ -18,6 +18,9 @@ namespace
 /// 2.6 solves.
 constexpr int DegreeOfSecondOrder = 26;
 
+/// Of the recurrence, which takes the time of the polynomial with so many.
+constexpr double MostIterations = 500.0;
+
 double SecondOrder(double y)
 {
   return y * y / (1.0 - 2.0 * y + 2.0 * y * y);
@@ -48,19 +51,44 @@ Vector ScaleFilterDiffusivities(
   return ofTriangles;
 }
 
-ResolventPolynomial MakeScaleFilter(std::shared_ptr<const Assembler> assembler,
-  const Vector& wavelengths, int order, const ParallelFor& parallel)
+ScaleFilter::ScaleFilter(std::shared_ptr<const Assembler> assembler, const Vector& wavelengths,
+  int order, const ParallelFor& parallel)
 {
   const TriangleMesh& mesh = assembler->Mesh();
   const Vector diffusivities = ScaleFilterDiffusivities(mesh, wavelengths, order, parallel);
   CornerWeights coefficients = CotanWeights(mesh, parallel);
   ForEach(
     parallel, mesh.NumberOfTriangles(), [&](Index t) { coefficients.row(t) *= diffusivities[t]; });
-  std::vector<double> series = ScaleFilterSeries(order);
+  if (order == 2)
+  {
+    this->Square = std::make_unique<SquareResolvent>(assembler, coefficients, parallel);
+    if (!(this->Square->ExpectedIterations() <= MostIterations))
+    {
+      this->Square.reset();
+    }
+  }
   const double largestStep = diffusivities.size() > 0 ? diffusivities.maxCoeff() : 1.0;
-  auto solver = MakeResolventSolver(mesh, largestStep, series, parallel);
-  return { std::move(assembler), coefficients, 1.0, std::move(series), std::move(solver),
-    parallel };
+  this->MakePolynomial = [=, &parallel]
+  {
+    std::vector<double> series = ScaleFilterSeries(order);
+    auto solver = MakeResolventSolver(assembler->Mesh(), largestStep, series, parallel);
+    return std::make_unique<ResolventPolynomial>(
+      assembler, coefficients, 1.0, std::move(series), std::move(solver), parallel);
+  };
+}
+
+void ScaleFilter::Apply(Values& u, const ProgressMonitor& progress)
+{
+  if (this->Square && this->Square->Apply(u, progress))
+  {
+    return;
+  }
+  this->Square.reset();
+  if (!this->Polynomial)
+  {
+    this->Polynomial = this->MakePolynomial();
+  }
+  this->Polynomial->Apply(u, progress);
 }
 
 } // namespace SurfaceDiffusion
