@@ -6,6 +6,7 @@
 #include "Conversion/InputArrays.h"
 #include "Conversion/SurfaceRuns.h"
 #include "Run/DerivativesRun.h"
+#include "Run/InputSentences.h"
 #include "Run/OwnedSettings.h"
 
 #include "vtkDataObject.h"
@@ -34,6 +35,11 @@ bool vtkSurfaceDerivativesFilter::FindFields(
   fields.Data = inputs.Find(0, "InputArray", InputArrays::AnyNumberOfComponents);
   fields.AlphaIsData = true; // there is no result that would have it unchanged
   fields.Mask = inputs.Find(1, "MaskArray", 1);
+  fields.SlopeErrors = inputs.Find(10, "SlopeErrorArray", InputArrays::AnyNumberOfComponents);
+  if (fields.SlopeErrors.OnCells)
+  {
+    problems.push_back(Say("CellArray", "SlopeErrorArray"));
+  }
   return fields.Data.Values != nullptr;
 }
 VTK_ABI_NAMESPACE_END

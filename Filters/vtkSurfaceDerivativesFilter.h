@@ -71,6 +71,12 @@
  * without a triangle that takes part, and such cells, get 0, or NaN if any data are missing.
  * Infinite data are an error.
  *
+ * Input array 10 (points), for ConductionVelocity, has the standard errors e of the slopes of the times, with
+ * as many components: the `SlopeError` of vtkSurfaceInterpolationFilter. Then `SpeedLower` and `SpeedUpper`,
+ * 1/(\|grad T\| +- 1.645 e), are the bounds of a band that holds 90 % of the speeds, named as `Speed` is.
+ * They are NaN where the speed or e is, and the upper one is infinite where the times may be constant. Not
+ * with SmoothingFWHM or ResultOnCells. Negative errors are an error.
+ *
  * Surfaces in pieces, over processes and partitions, are gathered and solved in process 0; see
  * vtkSurfaceFilter.
  *

@@ -101,6 +101,8 @@ FieldSummary InputFields::Summarize() const
   summary.PathPoints = this->PathPoints != nullptr;
   summary.Speeds = this->Speeds.Values != nullptr;
   summary.StartTimes = this->StartTimes.Values != nullptr;
+  summary.SlopeErrorComponents =
+    this->SlopeErrors.Values ? this->SlopeErrors.Values->GetNumberOfComponents() : 0;
   return summary;
 }
 
@@ -108,7 +110,8 @@ std::vector<vtkDataArray*> InputFields::List() const
 {
   return { this->Data.Values, this->Mask.Values, this->Direction.Values, this->Fixed.Values,
     this->Rates, this->Fidelity.Values, this->Seeds.Values, this->Speeds.Values,
-    this->StartTimes.Values, this->GlobalIds, this->Between, this->GivenCells };
+    this->StartTimes.Values, this->SlopeErrors.Values, this->GlobalIds, this->Between,
+    this->GivenCells };
 }
 
 unsigned int InputFields::Associations() const
@@ -194,6 +197,10 @@ Fields ReadFields(const InputFields& arrays, const TriangleCells& cells)
   fields.PathPoints = arrays.PathPoints;
   fields.Speeds = { ReadFactors(arrays.Speeds.Values), arrays.Speeds.OnCells };
   fields.StartTimes = ReadFactors(arrays.StartTimes.Values);
+  if (arrays.SlopeErrors.Values)
+  {
+    fields.SlopeErrors = ReadValues(arrays.SlopeErrors.Values, true);
+  }
   fields.Between = ReadFlags(arrays.Between);
   for (vtkIdType c = 0; arrays.GivenCells && c < numberOfCells; ++c)
   {

@@ -57,6 +57,7 @@ struct InputFields
   std::shared_ptr<const SourceShapes> PathPoints; ///< of distances
   LocatedArray Speeds; ///< index 8
   LocatedArray StartTimes; ///< index 9, on points
+  LocatedArray SlopeErrors; ///< index 10, on points
   vtkDataArray* GlobalIds = nullptr; ///< of the points
   vtkDataArray* Between = nullptr; ///< as in Fields, see PieceRefinement
   vtkDataArray* GivenCells = nullptr; ///< likewise

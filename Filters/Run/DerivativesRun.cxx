@@ -87,6 +87,25 @@ void DerivativesSettings::Check(const FieldSummary* fields, Problems& problems)
          << ": 3, the vectors, or a multiple of 3";
     problems.push_back(text);
   }
+  const Sentence name(Word::Array("SlopeErrorArray"));
+  if (fields->SlopeErrorComponents == 0 || this->Quantity != DerivativeQuantity::ConductionVelocity)
+  {
+    return;
+  }
+  if (fields->Data && fields->SlopeErrorComponents != fields->DataComponents)
+  {
+    problems.push_back(Sentence(name)
+      << " has " << fields->SlopeErrorComponents
+      << " components; allowed: " << fields->DataComponents << ", as many as " << fields->DataName);
+  }
+  const Sentence together = Sentence(" together with ")
+    << name << ", which is of times as they are";
+  Require(!(this->SmoothingFWHM > 0.0), Word::Setting("SmoothingFWHM"), this->SmoothingFWHM,
+    Sentence("0") << together, problems);
+  Require(!this->ResultOnCells, Word::Setting("ResultOnCells"),
+    Word::SwitchNumber(this->ResultOnCells),
+    Sentence(Word::SwitchNumber(false)) << " together with " << name << ", which is of points",
+    problems);
 }
 
 BlockInput DerivativesRun::WithoutMissing(const BlockInput& input)
@@ -236,6 +255,11 @@ void DerivativesRun::Update(
         {
           const Values turns = this->FindTurns(operators, ofTriangles, settings.ResultOnCells);
           this->AddVelocity(std::move(gradients), turns, settings.ResultOnCells);
+          if (fields.SlopeErrors.cols() > 0)
+          {
+            const Values speeds = this->Results[1].Rows;
+            this->AddBand(speeds, fields.SlopeErrors);
+          }
         }
       }
     }

@@ -48,7 +48,7 @@ public:
   {
   }
 
-  /// Only Data of the fields are read.
+  /// Only Data and SlopeErrors of the fields are read.
   void Update(const BlockInput& input, Settings& given, const ProgressMonitor& progress) override;
   bool ExcludesMasked() const override { return true; }
 
@@ -64,6 +64,8 @@ private:
   void AddParts(const Derivatives& operators, const Values& ofTriangles,
     const DerivativesSettings& settings, const ProgressMonitor& progress);
   void AddVelocity(Values gradients, const Values& turns, bool onTriangles);
+  /// SpeedLower and SpeedUpper of speeds at points, from the errors of slopes there.
+  void AddBand(const Values& speeds, const Values& slopeErrors);
   /// The divergence of the directions of the gradients of times on triangles, times the root of the control
   /// area: large where fronts begin, and far below 0 where they meet. On triangles the largest of the corners.
   Values FindTurns(const Derivatives& operators, const Values& gradients, bool onTriangles) const;

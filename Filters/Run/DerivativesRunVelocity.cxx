@@ -57,6 +57,41 @@ void DerivativesRun::AddVelocity(Values gradients, const Values& turns, bool onT
   add("Focus", (turns.array() > largestTurn).cast<double>());
 }
 
+void DerivativesRun::AddBand(const Values& speeds, const Values& slopeErrors)
+{
+  constexpr double quantile = 1.6448536269514722; // of the normal distribution: 5 % lie above it
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Values lower = speeds, upper = speeds;
+  for (Eigen::Index i = 0; i < speeds.rows(); ++i)
+  {
+    for (Eigen::Index c = 0; c < speeds.cols(); ++c)
+    {
+      const double error = slopeErrors(i, c);
+      if (error < 0.0)
+      {
+        throw ErrorAt(Word::Array("SlopeErrorArray"), "is negative", false, i,
+          "allowed: 0 or more, and NaN where the error is not known");
+      }
+      if (std::isnan(speeds(i, c)) || std::isnan(error))
+      {
+        lower(i, c) = upper(i, c) = std::numeric_limits<double>::quiet_NaN();
+        continue;
+      }
+      const double slowness = speeds(i, c) > 0.0 ? 1.0 / speeds(i, c) : 0.0;
+      lower(i, c) = 1.0 / (slowness + quantile * error);
+      const double smallest = slowness - quantile * error;
+      upper(i, c) = smallest > 0.0 ? 1.0 / smallest : infinity;
+    }
+  }
+  for (auto& [name, rows] : { std::pair<const char*, Values&>{ "SpeedLower", lower },
+         std::pair<const char*, Values&>{ "SpeedUpper", upper } })
+  {
+    this->Results.push_back({ name, Place::PerPoint, OutputType::Double, std::move(rows) });
+    this->Results.back().IsBesideResult = true;
+    this->Results.back().MayBeInfinite = true;
+  }
+}
+
 Values DerivativesRun::FindTurns(
   const Derivatives& operators, const Values& gradients, bool onTriangles) const
 {

@@ -60,6 +60,9 @@ struct Fields
   std::shared_ptr<const SourceShapes> Sources;
   Located<std::vector<double>> Speeds; ///< per point or cell; may be empty
   std::vector<double> StartTimes; ///< per point; may be empty
+  /// Standard errors of the slopes of Data, which are times: per point, a column per component, in the unit
+  /// of the data per unit of the coordinates, NaN where unknown; no row if there are none.
+  Values SlopeErrors;
   /// Points in space, from whose nearest places on the surface paths lead to the nearest source; null if
   /// there are none. Their segments do not count.
   std::shared_ptr<const SourceShapes> PathPoints;

@@ -55,6 +55,7 @@ struct FieldSummary
   bool Sources = false; ///< points or lines, in place of data
   bool Speeds = false;
   bool StartTimes = false;
+  int SlopeErrorComponents = 0; ///< 0: there are no errors of slopes
   bool PathPoints = false;
 };
 

@@ -23,7 +23,8 @@ const std::map<std::string, std::string> NamesOfArrays = { { "InputArray", "Data
   { "DataTermArray", "Data" }, { "MaskArray", "Mask" }, { "DirectionArray", "Directions" },
   { "FixedArray", "Fixed" }, { "DiffusionRateArray", "Rates" },
   { "FidelityArray", "FidelityFactors" }, { "SeedArray", "Seeds" }, { "CreaseArray", "Seeds" },
-  { "SourceArray", "Data" }, { "SpeedArray", "Speeds" }, { "SourceTimes", "StartTimes" } };
+  { "SourceArray", "Data" }, { "SpeedArray", "Speeds" }, { "SourceTimes", "StartTimes" },
+  { "SlopeErrorArray", "SlopeErrors" } };
 
 /// work(), whose errors are in the words of this interface.
 template <typename Work>
@@ -88,6 +89,7 @@ public:
     require("Seeds", fields.Seeds.Values.size(), fields.Seeds.OnCells);
     require("Speeds", fields.Speeds.Values.size(), fields.Speeds.OnCells);
     require("StartTimes", fields.StartTimes.size(), false);
+    require("SlopeErrors", rowsOf(fields.SlopeErrors), false);
     const auto faces = static_cast<std::size_t>(triangles.rows());
     RequireRows("Directions", rowsOf(fields.Directions.Values),
       fields.Directions.OnCells ? faces : static_cast<std::size_t>(points.rows()),
@@ -134,6 +136,7 @@ public:
     summary.PathPoints = this->Data.PathPoints != nullptr;
     summary.Speeds = !this->Data.Speeds.Values.empty();
     summary.StartTimes = !this->Data.StartTimes.empty();
+    summary.SlopeErrorComponents = static_cast<int>(this->Data.SlopeErrors.cols());
     return summary;
   }
 

@@ -243,6 +243,10 @@ FieldSummary PythonFields::Summarize() const
   summary.Speeds = this->Find("speeds") != nullptr;
   summary.StartTimes =
     this->Find("start_times") || (this->Sources && !this->Sources->StartTimes.empty());
+  if (const InputArray* const errors = this->Find("slope_errors"))
+  {
+    summary.SlopeErrorComponents = errors->ndim() == 1 ? 1 : static_cast<int>(errors->shape(1));
+  }
   summary.Directions = this->Find("directions") != nullptr;
   summary.Fixed = this->Find("fixed") != nullptr;
   summary.Rates = this->Find("rates") != nullptr;
@@ -304,6 +308,13 @@ Fields PythonFields::Read() const
   fields.PathPoints = this->PathPoints;
   fields.Speeds = this->Read<double>("speeds");
   fields.StartTimes = this->Read<double>("start_times").Values;
+  if (const InputArray* const errors = this->Find("slope_errors"))
+  {
+    const std::vector<double> given = this->Read<double>("slope_errors").Values;
+    const auto rows = static_cast<Eigen::Index>(errors->shape(0));
+    fields.SlopeErrors = Eigen::Map<const Values>(given.data(), rows,
+      static_cast<Eigen::Index>(given.size()) / std::max<Eigen::Index>(rows, 1));
+  }
   if (this->Find("ids"))
   {
     fields.MakeIds = [ids = this->Read<std::int64_t>("ids").Values] { return ids; };

@@ -118,7 +118,7 @@ public:
   {
   }
 
-  /// kind: "data" (rows x columns), "directions" (rows x 3), and "rates" (faces x 4), float64 but for
+  /// kind: "data" and "slope_errors" (rows x columns), "directions" (rows x 3), and "rates" (faces x 4), float64 but for
   /// the data; "mask", "fixed", and "between", uint8; "fidelity", "seeds", "speeds", and "start_times",
   /// float64; "ids" and "given_faces", int64. name: for messages; may be empty.
   void Set(const std::string& kind, InputArray array, bool onFaces, const std::string& name = {});

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._functions import SHARED, derivatives
-from ._result import BAND_90, ConductionVelocity, HelmholtzParts, InterpolationResult
-from ._surface import SurfaceLike, require_shape
+from ._result import ConductionVelocity, HelmholtzParts, InterpolationResult
+from ._surface import SurfaceLike
 
 __all__ = ["conduction_velocity", "curl", "divergence", "gradient", "helmholtz", "laplacian"]
 
@@ -194,9 +194,10 @@ def conduction_velocity(
     >>> float(found.speed.round(6).min()), found.velocity.shape
     (0.6, (200, 3))
     """
-    slope_error = None if error is None else _slope_error_of(error, others)
+    slope_error = None if error is None else _slope_error_of(error)
     outputs: list[Any] = []
-    derivatives(surface, times, quantity="ConductionVelocity", _outputs=outputs, **others)
+    derivatives(surface, times, quantity="ConductionVelocity", _outputs=outputs, _slope_error=slope_error,
+                **others)
     named = {output.name: output.values for output in outputs}
     result = ConductionVelocity(named["ConductionVelocity"], named["Speed"])
     speeds = np.asarray(result.speed)
@@ -205,27 +206,14 @@ def conduction_velocity(
         result.direction = np.where(speeds[..., None] > 0.0, vectors / speeds[..., None], 0.0 * vectors).reshape(
             result.velocity.shape)
     result.collision, result.focus = named["Collision"] > 0.0, named["Focus"] > 0.0
-    if slope_error is not None:
-        require_shape("error.slope_error", slope_error, slope_error.shape == speeds.shape,
-                      f"{speeds.shape}, that of the speed")
-        with np.errstate(divide="ignore", invalid="ignore"):
-            slowness = np.where(speeds > 0.0, 1.0 / speeds, 0.0)
-            lower = 1.0 / (slowness + BAND_90 * slope_error)
-            upper = np.maximum(slowness - BAND_90 * slope_error, 0.0)
-            upper = np.where(upper > 0.0, 1.0 / upper, np.inf)
-        undetermined = np.isnan(speeds) | np.isnan(slope_error)
-        result.speed_lower = np.where(undetermined, np.nan, lower)
-        result.speed_upper = np.where(undetermined, np.nan, upper)
+    result.speed_lower, result.speed_upper = named.get("SpeedLower"), named.get("SpeedUpper")
     return result
 
 
-def _slope_error_of(error: Any, others: dict[str, Any]) -> NDArray[np.float64]:
+def _slope_error_of(error: Any) -> NDArray[np.float64]:
     if not isinstance(error, InterpolationResult) or error.slope_error.size == 0:
         raise ValueError("error has no errors of slopes; allowed: the result of interpolate() with "
                          "compute_error=True and without exact=True")
-    if others.get("smoothing_fwhm") or others.get("result_on_faces"):
-        raise ValueError("error is given with smoothing_fwhm or result_on_faces; allowed: times as interpolate() "
-                         "has smoothed them, at points")
     return error.slope_error
 
 

@@ -996,7 +996,7 @@ def derivatives(
                             "the array is returned, and the speed by conduction_velocity()")
     surface = as_surface(surface)
     whole = whole or "_outputs" in properties
-    name = properties.pop("_name", "values")
+    name, slope_error = properties.pop("_name", "values"), properties.pop("_slope_error", None)
     if str(properties.get("quantity", "")).lower() in ("divergence", "curl", "helmholtz"):
         shape, n, m = np.shape(as_numbers(name, values)), surface.n_points, surface.n_faces
         require_shape(name, values, len(shape) in (1, 2) and shape[0] in (n, m), (
@@ -1004,7 +1004,13 @@ def derivatives(
     data, on_faces, _ = take_data("derivatives", surface, values, on_faces, name)
     data = data.astype(np.float64) if data.dtype == np.uint8 else data  # no colour, whose alpha is no data
     given = Input(surface, data, data_on_faces=on_faces, mask=left_out(mask, roi, surface))
-    outputs, found = run_once("derivatives", given, properties, {**ARRAYS, "InputArray": name}, progress)
+    if slope_error is not None:
+        allowed = (surface.n_points, *np.shape(values)[1:])
+        require_shape("error.slope_error", slope_error, slope_error.shape == allowed,
+                      f"{allowed}, one per point and column of {name}")
+        given.core.set("slope_errors", np.ascontiguousarray(slope_error, dtype=np.float64))
+    words = {**ARRAYS, "InputArray": name, "SlopeErrorArray": "error"}
+    outputs, found = run_once("derivatives", given, properties, words, progress)
     result = make_result(DerivativesResult, outputs, {"speed": None, **found}, surface)
     return result if whole else result.values
 

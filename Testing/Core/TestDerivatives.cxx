@@ -511,6 +511,67 @@ TEST(Derivatives, FindTheSpeedOfANoisyPlanarWave)
   EXPECT_LT((found.Result.rowwise().norm() - speed).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(Derivatives, TheBandOfTheSpeedOfAPlanarWaveHoldsIt)
+{
+  const Drawn s = Plate(10, 1.0);
+  const double slowness = 1.0 / 0.6;
+  Fields fields;
+  // Columns of slopes that are wrong by 1.6 standard errors, by 1.7, and by more than the slope itself.
+  fields.Data.Values =
+    s.Vertices.col(0) * Eigen::RowVector3d(slowness + 0.16, slowness + 0.17, 0.1);
+  DerivativesSettings settings;
+  settings.Quantity = DerivativeQuantity::ConductionVelocity;
+  const Solution before = Derivative(s.Vertices, s.Faces, fields, settings);
+  fields.SlopeErrors = Values::Constant(s.NumberOfVertices(), 3, 0.1);
+  fields.SlopeErrors(7, 0) = std::numeric_limits<double>::quiet_NaN();
+  const Solution found = Derivative(s.Vertices, s.Faces, fields, settings);
+  // The band comes on top of what there is without it.
+  EXPECT_EQ(found.Result, before.Result);
+  EXPECT_EQ(found.Arrays.size(), before.Arrays.size() + 2);
+  for (const auto& [name, values] : before.Arrays)
+  {
+    EXPECT_EQ(found.Arrays.at(name), values) << name;
+  }
+  EXPECT_EQ(before.Arrays.count("SpeedLower") + before.Arrays.count("SpeedUpper"), 0u);
+  const Values& lower = found.Arrays.at("SpeedLower");
+  const Values& upper = found.Arrays.at("SpeedUpper");
+  for (Index i = 0; i < s.NumberOfVertices(); ++i)
+  {
+    if (i == 7)
+    {
+      EXPECT_TRUE(std::isnan(lower(i, 0)) && std::isnan(upper(i, 0)));
+      continue;
+    }
+    EXPECT_TRUE(lower(i, 0) < 0.6 && 0.6 < upper(i, 0)) << lower(i, 0) << ' ' << upper(i, 0);
+    EXPECT_LT(upper(i, 1), 0.6);
+    EXPECT_NEAR(1.0 / lower(i, 1) - 1.0 / upper(i, 1), 0.329, 1e-4);
+    EXPECT_NEAR(lower(i, 2), 1.0 / 0.2645, 1e-3);
+    EXPECT_EQ(upper(i, 2), std::numeric_limits<double>::infinity());
+  }
+  const auto expect = [&](const std::string& text)
+  {
+    try
+    {
+      Derivative(s.Vertices, s.Faces, fields, settings);
+      ADD_FAILURE() << "no error; expected: " << text;
+    }
+    catch (const std::runtime_error& error)
+    {
+      EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+    }
+  };
+  settings.SmoothingFWHM = 0.5;
+  expect("SmoothingFWHM is 0.5; allowed: 0 together with SlopeErrors");
+  settings.SmoothingFWHM = 0.0;
+  settings.ResultOnCells = true;
+  expect("allowed: 0 together with SlopeErrors");
+  settings.ResultOnCells = false;
+  fields.SlopeErrors(4, 1) = -0.1;
+  expect("SlopeErrors is negative at point 4; allowed: 0 or more");
+  fields.SlopeErrors.conservativeResize(Eigen::NoChange, 2);
+  expect("SlopeErrors has 2 components; allowed: 3, as many as Data");
+}
+
 TEST(Derivatives, LeaveOutMissingDataAndMaskedParts)
 {
   const Drawn s = Plate(10, 1.0);

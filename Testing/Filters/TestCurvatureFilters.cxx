@@ -121,6 +121,45 @@ TEST(DerivativesFilter, AreExactOnAPlaneOfQuadrilaterals)
   }
 }
 
+TEST(DerivativesFilter, HasTheBandOfTheSpeedWithErrorsOfSlopes)
+{
+  const auto plane = Plane();
+  AddPointArray(plane, "e", 1, [](vtkIdType i, int) { return 0.01 * static_cast<double>(i); });
+  plane->GetCellData()->AddArray(
+    MakeArray(VTK_DOUBLE, "ofCells", 100, 1, [](vtkIdType, int) { return 0.1; }));
+  vtkNew<vtkSurfaceDerivativesFilter> filter;
+  filter->SetInputData(plane);
+  filter->SetQuantityToConductionVelocity();
+  SetInputArray(filter, 0, "t");
+  filter->Update();
+  EXPECT_EQ(Result(filter, "tSpeedLower"), nullptr);
+  SetInputArray(filter, 10, "e");
+  filter->Update();
+  vtkDataArray* const lower = Result(filter, "tSpeedLower");
+  vtkDataArray* const upper = Result(filter, "tSpeedUpper");
+  ASSERT_TRUE(lower && upper);
+  for (vtkIdType i = 0; i < 121; ++i)
+  {
+    const double half = 1.645 * 0.01 * static_cast<double>(i); // less than the slope, root 5
+    EXPECT_NEAR(1.0 / lower->GetComponent(i, 0), std::sqrt(5.0) + half, 1e-3);
+    EXPECT_NEAR(1.0 / upper->GetComponent(i, 0), std::sqrt(5.0) - half, 1e-3);
+  }
+  plane->GetPointData()->GetArray("e")->SetComponent(3, 0, 9.0); // as numpy does: not marked
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(Result(filter, "tSpeedUpper")->GetComponent(3, 0), vtkMath::Inf());
+  SetInputArray(filter, 10, "ofCells", true);
+  Messages messages(filter);
+  filter->Update();
+  ASSERT_EQ(messages.Errors.size(), 1u);
+  EXPECT_NE(messages.Errors[0].find("SlopeErrorArray"), std::string::npos) << messages.Errors[0];
+  SetInputArray(filter, 10, "absent");
+  filter->Update();
+  ASSERT_EQ(messages.Errors.size(), 2u);
+  EXPECT_NE(messages.Errors[1].find("SlopeErrorArray \"absent\""), std::string::npos)
+    << messages.Errors[1];
+}
+
 TEST(DerivativesFilter, NamesWhatIsNotAllowed)
 {
   const auto plane = Plane();

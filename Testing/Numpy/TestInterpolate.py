@@ -230,8 +230,16 @@ class Boundary(unittest.TestCase):
         self.assertLess(np.median(found.speed_upper - found.speed_lower), 0.15)
         with self.assertRaisesRegex(ValueError, "error has no errors of slopes; allowed: the result of interpolate"):
             sd.conduction_velocity(plane, result.values, error=sd.interpolate(plane, times, places))
-        with self.assertRaisesRegex(ValueError, "error is given with smoothing_fwhm or result_on_faces"):
+        with self.assertRaisesRegex(ValueError, "smoothing_fwhm is 8; allowed: 0 together with error"):
             sd.conduction_velocity(plane, result.values, error=result, smoothing_fwhm=8.0)
+        with self.assertRaisesRegex(ValueError, "result_on_faces is True; allowed: False together with error"):
+            sd.conduction_velocity(plane, result.values, error=result, result_on_faces=True)
+        with self.assertRaisesRegex(ValueError, r"error.slope_error has shape .*; allowed: \(\d+, 2\)"):
+            sd.conduction_velocity(plane, np.c_[result.values, result.values], error=result)
+        # The rule as numpy computes it.
+        slow, half = 1.0 / found.speed, 1.645 * result.slope_error
+        np.testing.assert_allclose(found.speed_lower, 1.0 / (slow + half), rtol=1e-4)
+        np.testing.assert_allclose(1.0 / found.speed_upper, np.maximum(slow - half, 0.0), rtol=1e-3, atol=1e-12)
         self.assertGreater(speeds["Natural"], 0.7)
         # The smoothing of many values is not sure either.
         inside, widths = [], []

@@ -19,7 +19,7 @@ GROUPS = ("Data", "Model", "Constraints", "Solver", "Time")
 NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
     "FidelityArray", "SeedArray", "CreaseArray", "DataTermArray", "PointsWithValues", "TimestepValues",
-    "Sources", "PathPoints", "SourceArray", "SpeedArray", "SourceTimes",
+    "Sources", "PathPoints", "SourceArray", "SpeedArray", "SourceTimes", "SlopeErrorArray",
     "Mean",  # a list: SetMean(region, component, value)
     "MissingValue",  # a list: AddMissingValue(value)
 }

@@ -521,6 +521,16 @@ inline std::vector<FilterKind> AllFilters()
         return filter;
       },
       "fConductionVelocity" },
+    { "SpeedWithBand",
+      []
+      {
+        auto filter = vtkSmartPointer<vtkSurfaceDerivativesFilter>::New();
+        SetInputArray(filter, 0, "f");
+        SetInputArray(filter, 10, "weights");
+        filter->SetQuantityToConductionVelocity();
+        return filter;
+      },
+      "fConductionVelocity" },
     MakeKind<vtkSurfaceDistanceFilter>("DistanceHeat", "Distance", 0,
       [](vtkSurfaceDistanceFilter* f)
       {

@@ -33,7 +33,7 @@ inline vtkSmartPointer<vtkPolyDataAlgorithm> Twin(
   {
     property.Copy(filter, twin);
   }
-  for (int index = 0; index < 10; ++index)
+  for (int index = 0; index < 11; ++index)
   {
     CopyInputArray(filter, twin, index);
   }
