@@ -423,31 +423,6 @@ TEST(BeltramiFlow, AnyToleranceLowersTheEnergyWithFidelity)
   }
 }
 
-TEST(BeltramiFlow, FixedMetricConservesTotalsAndBothKeepConstants)
-{
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Values f = Noise(mesh, 2);
-  const auto flow = MakeFlow(assembler, PointData::FromValues(f),
-    NaturalSettings(mesh, 100.0, Metric::Fixed), Iterative(1e-3));
-  Advance(*flow, 5);
-  for (int k = 0; k < 2; ++k)
-  {
-    const double scale = mesh.ControlAreas().dot(f.col(k).cwiseAbs());
-    EXPECT_NEAR(Total(mesh, flow->State(), k), Total(mesh, f, k), 1e-12 * scale);
-  }
-  for (const Metric metric : BothMetrics)
-  {
-    const Values constant = Values::Constant(f.rows(), 2, 1.0 / 3.0);
-    const auto still =
-      MakeFlow(assembler, PointData::FromValues(constant), NaturalSettings(mesh, 1e4, metric));
-    Advance(*still, 3);
-    EXPECT_EQ(still->State(), constant);
-    EXPECT_EQ(still->Energy(), 0.0);
-  }
-}
-
 TEST(BeltramiFlow, KeepsEdgesThatLinearDiffusionLoses)
 {
   const Surface s = Icosphere(4);
