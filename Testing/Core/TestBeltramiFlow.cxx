@@ -61,20 +61,6 @@ std::unique_ptr<BeltramiFlow> MakeFlow(std::shared_ptr<const Assembler> assemble
     settings, std::move(solver), parallel);
 }
 
-std::shared_ptr<LinearSolver> Iterative(double tolerance, const ParallelFor& parallel = SerialFor())
-{
-  std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver(parallel);
-  solver->SetLimits({ tolerance, 100000 });
-  return solver;
-}
-
-/// A frame from a fixed vector on each triangle.
-TangentVectors SkewFrames(const TriangleMesh& mesh, const Surface& s)
-{
-  const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
-  return TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
-}
-
 /// K and m M of the flow at u, from 3 x 3 matrices of the gradients in space.
 struct DenseSystem
 {

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/DirichletEnergy.h"
-#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
 #include "Meshes.h"
@@ -46,21 +45,6 @@ double HarmonicError(
   const Values exact = std::exp(-degree * (degree + 1) * time / (radius * radius)) * start;
   const Values u = Diffuse(assembler, PointData::FromValues(start), time, steps, 0.0, scheme);
   return RootMeanSquare(mesh, u - exact) / RootMeanSquare(mesh, exact);
-}
-
-/// p(1/(1 + s z)) of ExponentialSeries.
-double SeriesAt(double z)
-{
-  const double y = 1.0 / (1.0 + ExponentialSeries::Step * z);
-  double sum = 0.0;
-  for (int k = 0; k <= ExponentialSeries::Degree; ++k)
-  {
-    // Continued beyond [-1, 1], for derivatives at z = 0.
-    const double w = 2.0 * y - 1.0;
-    const double term = w <= 1.0 ? std::cos(k * std::acos(w)) : std::cosh(k * std::acosh(w));
-    sum += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * term;
-  }
-  return sum;
 }
 
 } // namespace
