@@ -4,8 +4,10 @@
 
 #include "Core/Models/LinearDiffusion.h"
 #include "Core/Operators/CotanWeights.h"
+#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Solvers/LinearSolver.h"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -49,6 +51,30 @@ inline Values Diffuse(std::shared_ptr<const Assembler> assembler, PointData data
   const auto heat = MakeHeat(std::move(assembler), std::move(data), settings);
   Advance(*heat, steps);
   return heat->State();
+}
+
+/// Conjugate gradients up to this tolerance, however many iterations it takes.
+inline std::shared_ptr<LinearSolver> Iterative(
+  double tolerance, const ParallelFor& parallel = SerialFor())
+{
+  std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver(parallel);
+  solver->SetLimits({ tolerance, 100000 });
+  return solver;
+}
+
+/// p(1/(1 + s z)) of ExponentialSeries.
+inline double SeriesAt(double z)
+{
+  const double y = 1.0 / (1.0 + ExponentialSeries::Step * z);
+  double sum = 0.0;
+  for (int k = 0; k <= ExponentialSeries::Degree; ++k)
+  {
+    // Continued beyond [-1, 1], for derivatives at z = 0.
+    const double w = 2.0 * y - 1.0;
+    const double term = w <= 1.0 ? std::cos(k * std::acos(w)) : std::cosh(k * std::acosh(w));
+    sum += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * term;
+  }
+  return sum;
 }
 
 } // namespace SurfaceDiffusion::Testing

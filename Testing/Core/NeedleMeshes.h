@@ -72,32 +72,18 @@ inline Surface TorusWithSeam(Index size, double majorRadius = 1.0, double minorR
 /// A closed cylinder of length 2 and radius 1 whose caps are fans around their centres.
 inline Surface CylinderWithFans(Index around, Index along)
 {
-  std::vector<Eigen::RowVector3d> vertices;
-  std::vector<Index> number;
-  for (Index j = 0; j <= along; ++j)
-  {
-    for (Index i = 0; i <= around; ++i)
-    {
-      number.push_back(j * around + i % around);
-      if (i < around)
-      {
-        const double p = 2.0 * Pi * i / around;
-        vertices.emplace_back(std::cos(p), std::sin(p), 2.0 * j / along - 1.0);
-      }
-    }
-  }
-  auto faces = GridFaces(around, along);
-  Renumber(faces, number);
-  const auto bottom = static_cast<Index>(vertices.size());
-  vertices.emplace_back(0.0, 0.0, -1.0);
-  vertices.emplace_back(0.0, 0.0, 1.0);
+  Surface s = Moved(Cylinder(around, along), { 0.0, 0.0, -1.0 });
+  const Index bottom = s.NumberOfVertices(), side = s.NumberOfTriangles();
+  s.Vertices.conservativeResize(bottom + 2, 3);
+  s.Vertices.bottomRows(2) << 0.0, 0.0, -1.0, 0.0, 0.0, 1.0;
+  s.Faces.conservativeResize(side + 2 * around, 3);
   for (Index i = 0; i < around; ++i)
   {
     const Index next = (i + 1) % around;
-    faces.push_back({ bottom, next, i });
-    faces.push_back({ bottom + 1, along * around + i, along * around + next });
+    s.Faces.row(side + 2 * i) << bottom, next, i;
+    s.Faces.row(side + 2 * i + 1) << bottom + 1, along * around + i, along * around + next;
   }
-  return MakeSurface(vertices, faces);
+  return s;
 }
 
 /// The unit sphere as the contour of its distance function, linear on the tetrahedra of a grid of

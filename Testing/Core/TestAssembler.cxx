@@ -5,7 +5,6 @@
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Operators/DirichletEnergy.h"
 #include "Meshes.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -237,23 +236,4 @@ TEST(Assembler, StopsWhenAsked)
   const auto mesh = MakeMesh(Icosphere(2));
   const ProgressMonitor::Callback stop = [](double) { return false; };
   EXPECT_THROW(Assembler(mesh, SerialFor(), ProgressMonitor(stop)), Aborted);
-}
-
-TEST(Assembler, ThreadsDoNotChangeTheMeshOrTheMatrix)
-{
-  const Surface s = Icosphere(5);
-  const ThreadedFor parallel(4);
-  const auto serialMesh = MakeMesh(s);
-  const auto mesh = std::make_shared<TriangleMesh>(s.Vertices, s.Faces, parallel);
-  EXPECT_EQ(mesh->InputVertex(), serialMesh->InputVertex());
-  EXPECT_EQ(mesh->TotalEdgeLength(), serialMesh->TotalEdgeLength());
-  EXPECT_TRUE(mesh->ControlAreas() == serialMesh->ControlAreas());
-  const Assembler serial(serialMesh);
-  const Assembler threaded(mesh, parallel);
-  SparseMatrix a = ZeroMatrix(serial.Pattern());
-  SparseMatrix b = ZeroMatrix(threaded.Pattern());
-  serial.Fill(a, serialMesh->ControlAreas(), 0.1, CotanWeights(*serialMesh));
-  threaded.Fill(b, mesh->ControlAreas(), 0.1, CotanWeights(*mesh, parallel), nullptr, parallel);
-  ASSERT_EQ(a.nonZeros(), b.nonZeros());
-  EXPECT_TRUE(std::equal(a.valuePtr(), a.valuePtr() + a.nonZeros(), b.valuePtr()));
 }

@@ -61,20 +61,6 @@ std::unique_ptr<BeltramiFlow> MakeFlow(std::shared_ptr<const Assembler> assemble
     settings, std::move(solver), parallel);
 }
 
-std::shared_ptr<LinearSolver> Iterative(double tolerance, const ParallelFor& parallel = SerialFor())
-{
-  std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver(parallel);
-  solver->SetLimits({ tolerance, 100000 });
-  return solver;
-}
-
-/// A frame from a fixed vector on each triangle.
-TangentVectors SkewFrames(const TriangleMesh& mesh, const Surface& s)
-{
-  const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
-  return TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
-}
-
 /// K and m M of the flow at u, from 3 x 3 matrices of the gradients in space.
 struct DenseSystem
 {
@@ -420,31 +406,6 @@ TEST(BeltramiFlow, AnyToleranceLowersTheEnergyWithFidelity)
         last = flow->Energy();
       }
     }
-  }
-}
-
-TEST(BeltramiFlow, FixedMetricConservesTotalsAndBothKeepConstants)
-{
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Values f = Noise(mesh, 2);
-  const auto flow = MakeFlow(assembler, PointData::FromValues(f),
-    NaturalSettings(mesh, 100.0, Metric::Fixed), Iterative(1e-3));
-  Advance(*flow, 5);
-  for (int k = 0; k < 2; ++k)
-  {
-    const double scale = mesh.ControlAreas().dot(f.col(k).cwiseAbs());
-    EXPECT_NEAR(Total(mesh, flow->State(), k), Total(mesh, f, k), 1e-12 * scale);
-  }
-  for (const Metric metric : BothMetrics)
-  {
-    const Values constant = Values::Constant(f.rows(), 2, 1.0 / 3.0);
-    const auto still =
-      MakeFlow(assembler, PointData::FromValues(constant), NaturalSettings(mesh, 1e4, metric));
-    Advance(*still, 3);
-    EXPECT_EQ(still->State(), constant);
-    EXPECT_EQ(still->Energy(), 0.0);
   }
 }
 

@@ -39,11 +39,6 @@ HeatSettings SteadyState(double fidelity)
   return settings;
 }
 
-double Total(const CellState& cells, const Values& f)
-{
-  return cells.Transfer.CellAreas().dot(f.col(0));
-}
-
 /// The cells within a distance of a point.
 std::vector<char> CellsNear(const CellInput& input, const Eigen::RowVector3d& centre, double radius)
 {
@@ -110,33 +105,6 @@ CellInput TorusOfPolygons(Index around, Index across, bool (*cut)(Index, Index),
 
 } // namespace
 
-TEST(CellData, TotalsAreKept)
-{
-  for (const bool quads : { false, true })
-  {
-    const Testing::Surface shape = Rotated(Torus(16, 10));
-    CellInput input(shape, quads ? CellsOfQuads(shape) : std::vector<Index>());
-    for (const bool delaunay : { false, true })
-    {
-      for (const bool detail : { false, true })
-      {
-        HeatSettings heat;
-        heat.IntrinsicDelaunay = delaunay;
-        TotalVariationSettings variation;
-        variation.IntrinsicDelaunay = delaunay;
-        SurfaceDiffusion::Run run(SerialFor());
-        const Values smooth = CellResultOf(run, input, heat, detail);
-        const CellState& cells = *run.GetBlock(0).Cells;
-        const double size = Total(cells, input.Data.Data.Values.cwiseAbs());
-        EXPECT_GT((smooth - input.Data.Data.Values).cwiseAbs().maxCoeff(), 0.05);
-        EXPECT_NEAR(Total(cells, smooth), Total(cells, input.Data.Data.Values), 1e-12 * size);
-        EXPECT_NEAR(Total(cells, CellResultOf(input, variation, detail)),
-          Total(cells, input.Data.Data.Values), 1e-12 * size);
-      }
-    }
-  }
-}
-
 TEST(CellData, AModelThatChangesNothingReturnsTheirBits)
 {
   CellInput input(Torus(32, 20));
@@ -146,24 +114,6 @@ TEST(CellData, AModelThatChangesNothingReturnsTheirBits)
   const Values same = CellResultOf(input, none);
   EXPECT_EQ(same, input.Data.Data.Values);
   EXPECT_TRUE(std::signbit(same(3, 0)));
-
-  // Held values: lambda is infinite.
-  SetMissing(input, CellsNear(input, { 3.0, 0.0, 0.0 }, 0.7));
-  HeatSettings held;
-  held.HoldKnownValues = true;
-  const Values filled = CellResultOf(input, held);
-  Index missing = 0;
-  for (Eigen::Index c = 0; c < filled.rows(); ++c)
-  {
-    if (std::isnan(input.Data.Data.Values(c, 0)))
-    {
-      ++missing;
-      EXPECT_TRUE(std::isfinite(filled(c, 0)));
-      continue;
-    }
-    EXPECT_EQ(filled(c, 0), input.Data.Data.Values(c, 0));
-  }
-  EXPECT_GT(missing, 5);
 }
 
 /// Cosines on a regular strip, in every cell.
@@ -290,18 +240,6 @@ TEST(CellData, AreFilledInWhereTheyAreMissing)
     settings.HoldKnownValues = true;
     EXPECT_LT((CellResultOf(input, settings) - exact).cwiseAbs().maxCoeff(), 1.0 / n);
   }
-}
-
-TEST(CellData, MaskedAndNaNCellsAreMissingAlike)
-{
-  CellInput masked(Torus(16, 10));
-  masked.Data.Mask.Values = CellsNear(masked, { 3.0, 0.0, 0.0 }, 0.7);
-  masked.Data.Mask.OnCells = true;
-  CellInput missing = masked;
-  missing.Data.Mask.Values.clear();
-  SetMissing(missing, masked.Data.Mask.Values);
-  TotalVariationSettings settings;
-  EXPECT_EQ(CellResultOf(masked, settings), CellResultOf(missing, settings));
 }
 
 TEST(CellData, ExcludedCellsAreAsIfTheyWereNotThere)

@@ -346,22 +346,6 @@ TEST(ChromaticityBrightness, BlackVerticesTakeTheChromaticityAroundThem)
   EXPECT_GT(model->State().minCoeff(), 0.01); // brightness has spread
 }
 
-TEST(ChromaticityBrightness, BlackEverywhereStaysBlack)
-{
-  const auto assembler = MakeAssembler(Icosphere(2));
-  const Values black = Values::Zero(assembler->Mesh().NumberOfVertices(), 3);
-  for (const double timeStep : { 0.0, 0.1 })
-  {
-    ColorSettings settings;
-    settings.TimeStep = timeStep;
-    settings.Fidelity = 1.0;
-    const auto model = MakeColors(assembler, PointData::FromValues(black), settings);
-    Advance(*model, 1);
-    EXPECT_TRUE(model->State() == black);
-    EXPECT_EQ(model->Energy(), 0.0);
-  }
-}
-
 TEST(ChromaticityBrightness, SteadyStateWithoutConditionsIsTheMean)
 {
   const Surface s = Joined(Icosphere(2), Moved(Icosphere(2), { 5.0, 0.0, 0.0 }));

@@ -3,7 +3,6 @@
 #include "Core/Geometry/DisplacementStatistics.h"
 #include "Interpolation.h"
 #include "Meshes.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -124,17 +123,4 @@ TEST(DisplacementStatistics, FixedVerticesTakeNoPart)
   const DisplacementStatistics free(mesh, fixed);
   EXPECT_NEAR(free.Whiteness(noise), 1.0, 3.0 * free.WhitenessDeviation());
   EXPECT_LT(free.WhitenessDeviation(), 0.05);
-}
-
-TEST(DisplacementStatistics, DoesNotDependOnTheNumberOfThreads)
-{
-  const Surface torus = Torus(120, 60);
-  const TriangleMesh mesh(torus.Vertices, torus.Faces);
-  const ThreadedFor threads(3);
-  const std::vector<char> none;
-  const DisplacementStatistics one(mesh, none);
-  const DisplacementStatistics three(mesh, none, threads);
-  const Vector noise = WhiteNoise(mesh.NumberOfVertices());
-  EXPECT_EQ(one.Whiteness(noise), three.Whiteness(noise));
-  EXPECT_EQ(one.LocalWhiteness(noise), three.LocalWhiteness(noise));
 }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Sources anywhere on a surface, speeds and barriers, in the user's terms.
-#include "Core/Foundation/ThreadPool.h"
 #include "Meshes.h"
 #include "Run/Solve.h"
 
@@ -569,20 +568,4 @@ TEST(DistanceRun, NamesWhatIsNotAllowed)
   expect(data, "Data is infinite at point 4");
   settings.MaximumDistance = -1.0;
   expect(data, "MaximumDistance is -1; allowed: ");
-}
-
-TEST(DistanceRun, ThreadsDoNotChangeABit)
-{
-  const Shape s = Jittered(Plate(30, 3.0), 0.05, -2.9, 2.9, -2.9, 2.9);
-  SurfaceData data;
-  data.Sources = Shapes({ { 0.1, 0.2, 0.0 }, { 1.0, 1.0, 0.0 }, { -1.0, 0.3, 0.0 } }, { { 0, 1 } });
-  DistanceSettings settings;
-  settings.ComputeGradient = true;
-  const Solution serial = Distance(s.Vertices, s.Faces, data, settings);
-  ThreadPool pool(4);
-  const Solution threaded = Distance(s.Vertices, s.Faces, data, settings, pool);
-  for (const auto& [name, values] : serial.Arrays)
-  {
-    EXPECT_EQ(threaded.Arrays.at(name), values) << name;
-  }
 }

@@ -214,27 +214,6 @@ TEST(GeneralizedVariation, WithL1TakesOutliersOutOfRamps)
   EXPECT_LT(LargestDifference(plate.Solve(PointData::FromValues(f), settings), clean), 1e-3);
 }
 
-TEST(GeneralizedVariation, KeepsFixedValuesTotalsAndFiniteValues)
-{
-  for (const Surface& shape : { Moebius(24, 4), ThreeFins(5), Torus(16, 8),
-         Joined(Tetrahedron(), Moved(Icosphere(1), { 5, 0, 0 })) })
-  {
-    const Problem problem(shape);
-    PointData data = PointData::FromValues(Noise(problem.Mesh(), 2));
-    const Values u = problem.Solve(data, problem.Settings(3.0, 2.0 * problem.h(), 1e-3));
-    EXPECT_LE(problem.Report.Residual, 1e-3);
-    for (Eigen::Index k = 0; k < 2; ++k)
-    {
-      EXPECT_NEAR(Total(problem.Mesh(), u, k), Total(problem.Mesh(), data.Start, k), 1e-12);
-    }
-    data.Fixed[0] = true;
-    data.Start.row(0) << 2.0, -3.0;
-    const Values held = problem.Solve(data, problem.Settings(3.0, 2.0 * problem.h(), 1e-3));
-    EXPECT_EQ(held.row(0), data.Start.row(0));
-    EXPECT_LE(problem.Report.Residual, 1e-3);
-  }
-}
-
 TEST(GeneralizedVariation, OfRampsAndRoofsHasAFractionOfTheError)
 {
   const Problem sphere(Rotated(Icosphere(4)));

@@ -38,25 +38,6 @@ PointData Hedgehog(const TriangleMesh& mesh, const Surface& s, double turns)
 
 } // namespace
 
-TEST(HarmonicMap, PreconditionersAgree)
-{
-  const auto assembler = MakeAssembler(Icosphere(3));
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Values f = RandomUnitVectors(mesh, 3);
-  auto settings = MapSettings(mesh, 1.0, 0.3, 1e-4);
-  std::vector<Values> results;
-  for (const auto method : { HarmonicMap::Preconditioner::Jacobi,
-         HarmonicMap::Preconditioner::Factor, HarmonicMap::Preconditioner::Multigrid })
-  {
-    settings.Method = method;
-    const auto map = MakeMap(assembler, PointData::FromValues(f), settings);
-    Advance(*map, 2);
-    results.push_back(map->State());
-  }
-  EXPECT_LT((results[0] - results[1]).cwiseAbs().maxCoeff(), 1e-7);
-  EXPECT_LT((results[0] - results[2]).cwiseAbs().maxCoeff(), 1e-7);
-}
-
 TEST(HarmonicMap, MultigridIsChosenWhereDiffusionDominates)
 {
   const Surface sphere = Icosphere(4);

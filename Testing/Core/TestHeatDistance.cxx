@@ -98,23 +98,6 @@ TEST(HeatDistance, OnATetrahedronIsEqualAtTheOtherCorners)
   EXPECT_NEAR(found[3], found[1], 1e-9);
 }
 
-// Two refinements at least halve the error, and fronts are at least as near.
-TEST(HeatDistance, OnASphereConvergesToGreatCircles)
-{
-  std::vector<double> errors;
-  for (const int subdivisions : { 2, 4, 6 })
-  {
-    const Surface s = Icosphere(subdivisions);
-    const Distances distances(s);
-    const Vector exact = GreatCircles(s, 5);
-    errors.push_back((distances.From(5) - exact).cwiseAbs().mean());
-    EXPECT_LE((distances.ByFronts(5) - exact).cwiseAbs().mean(), errors.back());
-  }
-  EXPECT_LT(errors[1], 0.5 * errors[0]);
-  EXPECT_LT(errors[2], 0.5 * errors[1]);
-  EXPECT_LT(errors[2], 0.002 * Pi);
-}
-
 // The heat of many sources has gradients between them, where the distance is 0.
 TEST(HeatDistance, FromARegionIsThatFromItsRim)
 {

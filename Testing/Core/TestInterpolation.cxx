@@ -4,7 +4,6 @@
 #include "EveryMeshFile.h"
 #include "Heat.h"
 #include "Interpolation.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -171,36 +170,6 @@ TEST(Interpolation, SlopesThatBalanceAtAnEdgeHaveNoFreeEnergy)
   EXPECT_GT(energy.Squares(slopes(1.0, 2.0, 0.0))[0], 0.1);
 }
 
-TEST(Interpolation, LeavesComponentsWithoutValuesUndetermined)
-{
-  const Surface s = Joined(Icosphere(2),
-    Joined(Moved(Torus(12, 8), { 9.0, 0.0, 0.0 }), Moved(Icosphere(1), { 0.0, 9.0, 0.0 })));
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Values field = Sample(mesh, s, [](const Eigen::RowVector3d& x) { return x[2] + 5.0; });
-  const Index torus = 162, last = 162 + 96;
-  const auto data =
-    ValuesAt(mesh, field, [&](Index i) { return i % 3 == 0 && (i < torus || i >= last); });
-  for (const Choice choice : { Choice::Exact, Choice::Automatic })
-  {
-    Interpolation::Settings settings = InterpolationSettings(choice);
-    settings.ComputeError = true;
-    const Interpolation::Result result = Interpolate(assembler, data, settings);
-    EXPECT_EQ(result.UndeterminedComponents, 1);
-    for (Index i = 0; i < mesh.NumberOfVertices(); ++i)
-    {
-      const Index input = mesh.InputVertex()[i];
-      const bool isKnown = input < torus || input >= last;
-      EXPECT_EQ(std::isfinite(result.U(i, 0)), isKnown);
-      EXPECT_EQ(std::isfinite(result.Error(i, 0)), isKnown);
-      if (isKnown)
-      {
-        EXPECT_NEAR(result.U(i, 0), field(i, 0), 0.4);
-      }
-    }
-  }
-}
-
 TEST(Interpolation, TakesTheWeightedMeanOfValuesAtOnePlace)
 {
   const auto assembler = MakeAssembler(Icosphere(2));
@@ -287,14 +256,6 @@ TEST(Interpolation, TakesTheMeanOfValuesAtPlacesThatAreAllButOne)
   }
 }
 
-TEST(Interpolation, WithoutAnyValueIsAnError)
-{
-  const auto assembler = MakeAssembler(Icosphere(1));
-  EXPECT_THROW(
-    Interpolate(assembler, { {}, Values(0, 1), Vector(0) }, InterpolationSettings(Choice::Exact)),
-    std::runtime_error);
-}
-
 TEST(Interpolation, RefusesSmoothingAndNoiseThatAreNotPositive)
 {
   const auto assembler = MakeAssembler(Icosphere(1));
@@ -304,79 +265,6 @@ TEST(Interpolation, RefusesSmoothingAndNoiseThatAreNotPositive)
   {
     EXPECT_THROW(
       Interpolate(assembler, data, InterpolationSettings(choice, 0.0)), std::invalid_argument);
-  }
-}
-
-TEST(Interpolation, DependsNeitherOnRotationNorOnNumberingNorOnThreads)
-{
-  const Surface s = Icosphere(3);
-  const auto numbers = Permutation(s.NumberOfVertices(), 5);
-  const auto moved = MakeAssembler(Renumbered(Rotated(s, 2.0), numbers));
-  const auto assembler = MakeAssembler(s);
-  const Values field = Sample(assembler->Mesh(), s, SeaTemperature);
-  std::vector<Index> original(numbers.size());
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-  {
-    original[numbers[i]] = static_cast<Index>(i);
-  }
-  const Values input = ToInput(assembler->Mesh(), field, s.NumberOfVertices());
-  Values movedField(field.rows(), 1);
-  for (Index i = 0; i < moved->Mesh().NumberOfVertices(); ++i)
-  {
-    movedField.row(i) = input.row(original[moved->Mesh().InputVertex()[i]]);
-  }
-  for (const RimCondition rim : { RimCondition::Natural, RimCondition::Free })
-  {
-    for (const Choice choice : { Choice::Exact, Choice::Automatic })
-    {
-      Interpolation::Settings settings = InterpolationSettings(choice);
-      settings.Rim = rim;
-      settings.ComputeError = true;
-      const auto known = [](Index i) { return i % 7 == 0; };
-      const auto data = ValuesAt(assembler->Mesh(), field, known);
-      const auto result = Interpolate(assembler, data, settings);
-      const auto again = Interpolate(moved,
-        ValuesAt(moved->Mesh(), movedField, [&](Index i) { return known(original[i]); }), settings);
-      const ThreadedFor threads(3);
-      const auto threaded = Interpolate(assembler, data, settings, threads);
-      EXPECT_EQ(threaded.U, result.U);
-      EXPECT_EQ(threaded.Error, result.Error);
-      const Values u = ToInput(assembler->Mesh(), result.U, s.NumberOfVertices());
-      const Values v = ToInput(moved->Mesh(), again.U, s.NumberOfVertices());
-      double difference = 0.0;
-      for (Index i = 0; i < s.NumberOfVertices(); ++i)
-      {
-        difference = std::max(difference, std::abs(u(i, 0) - v(numbers[i], 0)));
-      }
-      EXPECT_LT(difference, 1e-9 * 30.0); // of the field's range
-    }
-  }
-}
-
-TEST(Interpolation, ScalesWithTheCoordinatesAndTheValues)
-{
-  const Surface s = Disk(9);
-  const auto f = [](const Eigen::RowVector3d& x) { return std::sin(3.0 * x[0]) + x[1] * x[1]; };
-  Values expected;
-  for (const double size : { 1.0, 1e-7, 3e12 })
-  {
-    const Surface scaled = Scaled(s, size);
-    const auto assembler = MakeAssembler(scaled);
-    const TriangleMesh& mesh = assembler->Mesh();
-    const Values field = Sample(mesh, s, f);
-    for (const double unit : { 1.0, 1e-9, 1e8 })
-    {
-      const auto data = ValuesAt(mesh, unit * field, [](Index i) { return i % 5 == 0; });
-      Interpolation::Settings settings = InterpolationSettings(Choice::Automatic);
-      settings.Kappa = 2.0 / size * mesh.LengthUnit();
-      const Values u =
-        ToInput(mesh, Interpolate(assembler, data, settings).U / unit, s.NumberOfVertices());
-      if (expected.rows() == 0)
-      {
-        expected = u;
-      }
-      EXPECT_LT(LargestDifference(u, expected), 1e-6);
-    }
   }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Operators/DirichletEnergy.h"
-#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/MeanCorrection.h"
 #include "Heat.h"
 #include "Meshes.h"
@@ -46,21 +45,6 @@ double HarmonicError(
   const Values exact = std::exp(-degree * (degree + 1) * time / (radius * radius)) * start;
   const Values u = Diffuse(assembler, PointData::FromValues(start), time, steps, 0.0, scheme);
   return RootMeanSquare(mesh, u - exact) / RootMeanSquare(mesh, exact);
-}
-
-/// p(1/(1 + s z)) of ExponentialSeries.
-double SeriesAt(double z)
-{
-  const double y = 1.0 / (1.0 + ExponentialSeries::Step * z);
-  double sum = 0.0;
-  for (int k = 0; k <= ExponentialSeries::Degree; ++k)
-  {
-    // Continued beyond [-1, 1], for derivatives at z = 0.
-    const double w = 2.0 * y - 1.0;
-    const double term = w <= 1.0 ? std::cos(k * std::acos(w)) : std::cosh(k * std::acosh(w));
-    sum += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] * term;
-  }
-  return sum;
 }
 
 } // namespace
@@ -455,19 +439,6 @@ TEST(LinearDiffusion, MissingValuesAreFilledHarmonicallyAndNeverRead) // (18)
   EXPECT_LT((u - exact).cwiseAbs().maxCoeff(), 0.01);
 }
 
-TEST(LinearDiffusion, BackwardEulerKeepsBoundsOnADelaunayMesh)
-{
-  const auto assembler = MakeAssembler(Icosphere(3));
-  for (const double time : { 1e-4, 1e-2, 1.0 })
-  {
-    const Values start = Noise(assembler->Mesh());
-    const Values u =
-      Diffuse(assembler, PointData::FromValues(start), time, 1, 0.0, Scheme::BackwardEuler);
-    EXPECT_LE(u.maxCoeff(), start.maxCoeff());
-    EXPECT_GE(u.minCoeff(), start.minCoeff());
-  }
-}
-
 TEST(LinearDiffusion, EnergyOfAHarmonicIsItsEigenvalueTimesItsNorm)
 {
   const Surface s = Icosphere(5);
@@ -498,25 +469,6 @@ TEST(LinearDiffusion, EnergyOfALinearFunctionIsExactOnAnyNumberOfTriangles)
   const double exact = 0.5 * 2.0 * 25.0;
   EXPECT_NEAR(DirichletEnergy(mesh, CotanWeights(mesh), f, SerialFor()), exact, 1e-9 * exact);
   EXPECT_NEAR(DirichletEnergy(mesh, CornerWeights(), f, SerialFor()), exact, 1e-9 * exact);
-}
-
-TEST(LinearDiffusion, EnergyNeverGrows)
-{
-  const auto assembler = MakeAssembler(Jittered(Strip(15, 15), 0.02, 0, 1, 0, 1));
-  for (const Scheme scheme : { Scheme::BackwardEuler, Scheme::SDIRK2, Scheme::SteadyState })
-  {
-    for (const double lambda : { 0.0, 10.0 })
-    {
-      const auto heat = MakeHeat(assembler, PointData::FromValues(Noise(assembler->Mesh(), 2)),
-        HeatSettings(assembler->Mesh(), 0.01, lambda, scheme));
-      for (int step = 0; step < 10; ++step)
-      {
-        const double before = heat->Energy();
-        heat->Advance(ProgressMonitor());
-        EXPECT_LE(heat->Energy() - before, 1e-13 * before);
-      }
-    }
-  }
 }
 
 TEST(LinearDiffusion, ColumnsTogetherHaveTheBitsThatTheyHaveAlone)

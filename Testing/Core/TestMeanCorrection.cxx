@@ -140,31 +140,6 @@ INSTANTIATE_TEST_SUITE_P(TotalCorrection, WithSolver,
     Kind{ "LooseConjugateGradient", LooseConjugateGradients }),
   [](const auto& parameter) { return parameter.param.Name; });
 
-// Models that do not conserve the total must not be forced to: it follows the exact solution.
-TEST(TotalCorrection, FidelityToOtherDataMovesTheSum)
-{
-  const auto assembler = MakeAssembler(Icosphere(2));
-  const TriangleMesh& mesh = assembler->Mesh();
-  PointData data = PointData::FromValues(Values::Ones(mesh.NumberOfVertices(), 1));
-  data.Start.setZero();
-  const double lambda = 3.0;
-  const double time = 0.5;
-  const Values u = Diffuse(assembler, data, time, 200, lambda);
-  const double expected = 1.0 - std::exp(-lambda * time);
-  EXPECT_LT((u.array() - expected).abs().maxCoeff(), 1e-5);
-}
-
-TEST(TotalCorrection, MaskedFidelityMovesTheSumTowardsTheKnownValues)
-{
-  const auto assembler = MakeAssembler(Icosphere(2));
-  const TriangleMesh& mesh = assembler->Mesh();
-  PointData data = PointData::FromValues(Values::Ones(mesh.NumberOfVertices(), 1));
-  data.Missing.head(50) = true;
-  data.Start.topRows(50).setZero();
-  const Values u = Diffuse(assembler, data, 100.0, 50, 3.0);
-  EXPECT_LT((u.array() - 1.0).abs().maxCoeff(), 1e-9);
-}
-
 TEST(TotalCorrection, TotalIsTheWeightedSum)
 {
   const auto mesh = MakeMesh(Icosphere(2));

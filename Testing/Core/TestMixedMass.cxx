@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Foundation/SymmetricModes.h"
 #include "Core/Geometry/HeatRegression.h"
-#include "Core/Operators/ExponentialSeries.h"
 #include "Core/Operators/MixedMass.h"
 #include "Heat.h"
 #include "NoiseWidth.h"
@@ -19,19 +18,6 @@ using namespace SurfaceDiffusion::Testing;
 
 namespace
 {
-
-/// p(1/(1 + s z)) of ExponentialSeries.
-double SeriesAt(double z)
-{
-  const double y = 1.0 / (1.0 + ExponentialSeries::Step * z);
-  double sum = 0.0;
-  for (int k = 0; k <= ExponentialSeries::Degree; ++k)
-  {
-    sum += ExponentialSeries::Coefficients[static_cast<std::size_t>(k)] *
-      std::cos(k * std::acos(2.0 * y - 1.0));
-  }
-  return sum;
-}
 
 double TimeOfWidth(double width)
 {

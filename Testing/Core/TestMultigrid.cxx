@@ -112,49 +112,6 @@ TEST(Multigrid, SolvesComponentsApartFromEachOther)
   EXPECT_LE(IterationsOf(HeatMatrix(*assembler, 100.0), Noise(assembler->Mesh())), 30);
 }
 
-TEST(Multigrid, IsSymmetricAndPositive)
-{
-  const auto assembler = MakeAssembler(Icosphere(4));
-  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
-  const ParallelFor serial;
-  Multigrid multigrid(serial);
-  multigrid.SetMatrix(matrix);
-  const Vector inverse = matrix.diagonal().cwiseInverse();
-  const Values r = Noise(assembler->Mesh(), 2);
-  Values z(r.rows(), 2);
-  std::vector<double> scale(2);
-  for (int c = 0; c < 2; ++c)
-  {
-    scale[c] = 1.0 / std::sqrt(inverse.dot(r.col(c).cwiseAbs2()));
-  }
-  multigrid.Apply(r, scale, z);
-  const Eigen::Matrix2d products = r.transpose() * z;
-  EXPECT_GT(products(0, 0), 0.0);
-  EXPECT_GT(products.determinant(), 0.0);
-  const double size = std::sqrt(products(0, 0) * products(1, 1));
-  EXPECT_NEAR(products(0, 1), products(1, 0), 1e-5 * size); // single precision
-}
-
-TEST(Multigrid, HasTheSameBitsOnAnyNumberOfThreads)
-{
-  const auto assembler = MakeAssembler(Icosphere(5));
-  const SparseMatrix matrix = HeatMatrix(*assembler, 100.0);
-  const Values b = matrix * Noise(assembler->Mesh(), 3);
-  const auto solve = [&](const ParallelFor& parallel)
-  {
-    const auto solver = MakeMultigridSolver(parallel);
-    solver->SetMatrix(matrix);
-    Values x = Values::Zero(b.rows(), b.cols());
-    solver->Solve(b, x);
-    return x;
-  };
-  const Values serial = solve(SerialFor());
-  for (const int threads : { 2, 4 })
-  {
-    EXPECT_TRUE(solve(ThreadedFor(threads)) == serial) << threads;
-  }
-}
-
 TEST(Multigrid, AllocatesNothingInLaterSolves)
 {
   const auto assembler = MakeAssembler(Icosphere(4));

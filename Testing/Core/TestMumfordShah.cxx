@@ -4,7 +4,6 @@
 #include "Core/Models/MumfordShah.h"
 #include "Core/Operators/CotanWeights.h"
 #include "Core/Surface/IntrinsicDelaunay.h"
-#include "EveryMeshFile.h"
 #include "Heat.h"
 #include "Meshes.h"
 
@@ -308,19 +307,6 @@ TEST(MumfordShah, EnergyFallsOnObtuseMeshesWithLooseSolves)
   }
 }
 
-TEST(MumfordShah, EnergyFallsOnScannedMeshes)
-{
-  ForEachMeshFile(
-    [](const Surface& s)
-    {
-      const auto assembler = MakeAssembler(s);
-      const TriangleMesh& mesh = assembler->Mesh();
-      const auto model =
-        MakeModel(assembler, PointData::FromValues(0.3 * Noise(mesh)), NaturalSettings(mesh, 0.4));
-      EXPECT_GT(TakeSteps(*model, 12), 3);
-    });
-}
-
 TEST(MumfordShah, RotatedColorsHaveTheSameEdges)
 {
   const Surface s = Icosphere(4);
@@ -377,23 +363,6 @@ TEST(MumfordShah, HolesAreFilledThroughEdges)
     ASSERT_EQ(lines.NumberOfLines(), 1); // the edge goes through the hole
     EXPECT_NEAR(lines.Length(0), 1.0, 3.0 * h);
   }
-}
-
-TEST(MumfordShah, FixedValuesAndTotalsStay)
-{
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  PointData data = PointData::FromValues(Cap(mesh, s, 0.3, 0.1));
-  const auto free = MakeModel(assembler, data, NaturalSettings(mesh, 0.2));
-  Finish(*free);
-  const Vector& areas = mesh.ControlAreas();
-  EXPECT_NEAR(areas.dot(free->State().col(0)) / areas.dot(data.Start.col(0)), 1.0, 1e-12);
-  data.Fixed.segment(200, 50) = true;
-  data.Start.middleRows(200, 50).array() += 0.5;
-  const auto held = MakeModel(assembler, data, NaturalSettings(mesh, 0.2));
-  Finish(*held);
-  EXPECT_EQ(held->State().middleRows(200, 50), data.Start.middleRows(200, 50));
 }
 
 TEST(MumfordShah, ConstantsStayToTheLastBit)

@@ -189,29 +189,6 @@ TEST(NoiseLevel, SmoothSignalsAreNoCorrelatedNoise)
   }
 }
 
-TEST(NoiseLevel, SteadyStateAtTheFoundFidelityLeavesTheNoise)
-{
-  const Surface s = Icosphere(4);
-  const auto assembler = MakeAssembler(s);
-  const TriangleMesh& mesh = assembler->Mesh();
-  const double sigma = 0.2;
-  const Values clean = Picture(mesh, s);
-  const Values f = clean + sigma * GaussianNoise(mesh, 1);
-  const auto data = PointData::FromValues(f);
-  const auto solve = [&](double lambda)
-  {
-    const auto heat = MakeHeat(assembler, data, { 1.0, lambda, Scheme::SteadyState });
-    Advance(*heat, 1);
-    return heat->State();
-  };
-  const double lambda = FindFidelityByDiscrepancy(
-    [&](double trial) { return Discrepancy(mesh, data, solve(trial)); }, sigma, 10.0)
-                          .Weight;
-  const Values u = solve(lambda);
-  EXPECT_NEAR(Discrepancy(mesh, data, u), sigma, 0.01 * sigma);
-  EXPECT_LT(RootMeanSquare(mesh, u - clean), 0.5 * sigma); // and denoises
-}
-
 /// In a disk of slices, all vertices are near to each other through the middle.
 TEST(NoiseLevel, RingsHaveASizeInProportionAroundVerticesOfMany)
 {

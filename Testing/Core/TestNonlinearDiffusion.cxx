@@ -32,13 +32,6 @@ PointData ColourNoise(const TriangleMesh& mesh, Eigen::Index columns)
   return PointData::FromValues(u);
 }
 
-/// Frames from a fixed vector.
-TangentVectors SkewFrames(const TriangleMesh& mesh, const Surface& s)
-{
-  const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
-  return TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
-}
-
 /// The matrix K(u) of (14) written out: entries sum of area grad(phi_i) . D grad(phi_j), the
 /// gradients from the triangle's corners in space.
 Eigen::MatrixXd DenseStiffness(const TriangleMesh& mesh, const Surface& s, const Values& u,

@@ -4,7 +4,6 @@
 #include "Core/Geometry/QuadricDistances.h"
 #include "Meshes.h"
 #include "NoisySurfaces.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -204,18 +203,6 @@ TEST(NormalVariation, PlanesAtAnyAngleKeepTheirNormals)
     found.rowwise().normalize();
     EXPECT_LT(LargestDifference(found, data), 0.003) << degrees;
   }
-}
-
-TEST(NormalVariation, DoesNotDependOnTheNumberOfThreadsOrAPowerOfTwoOfTheScale)
-{
-  const Surface block = NoisyAlongNormals(LBlock(24), 0.3);
-  const Faces faces(block);
-  const Faces large(Scaled(block, 1024.0));
-  const Points& data = faces.Geometry.Normals;
-  const Points found = faces.Variation().Minimize(data, Settings(0.1, 0.13, 10));
-  EXPECT_EQ(large.Variation().Minimize(data, Settings(0.1, 0.13, 10)), found);
-  const ThreadedFor threads(3);
-  EXPECT_EQ(faces.Variation(threads).Minimize(data, Settings(0.1, 0.13, 10)), found);
 }
 
 TEST(NormalVariation, EdgesOfSeveralTrianglesJoinNoNormals)

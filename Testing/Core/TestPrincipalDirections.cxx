@@ -92,13 +92,6 @@ TEST(PrincipalDirections, OfACylinderAreItsAxis)
   EXPECT_NEAR(result.Difference.maxCoeff(), 2.0, 0.1);
 }
 
-TEST(PrincipalDirections, PlanesHaveNone)
-{
-  const Result result = Find(Rotated(Strip(8, 8)), 0.3);
-  EXPECT_EQ(result.Directions.cwiseAbs().maxCoeff(), 0.0);
-  EXPECT_LT(result.Difference.maxCoeff(), 1e-9);
-}
-
 TEST(PrincipalDirections, PlanesInSinglePrecisionHaveNone)
 {
   for (const double angle : { 0.3, 1.0, 2.2 })

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BlockParts.h"
-#include "ThreadedFor.h"
 
 #include "Core/Geometry/Relief.h"
 #include "Core/Geometry/SelfIntersections.h"
@@ -273,16 +272,6 @@ TEST(Relief, WorksOnASurfaceThatCrossesItself)
   EXPECT_GT(relief.CrossingTrianglesBefore, 0);
   EXPECT_GT(relief.CrossingTriangles, 0);
   EXPECT_GT(VolumeOf(relief.Places, relief.Faces), VolumeOf(s.Vertices, s.Faces) + 0.2);
-}
-
-TEST(Relief, HasTheSameBitsOnAnyNumberOfThreads)
-{
-  const Surface s = Refined(Bracket(), 0.05);
-  const Vector heights = RoughHeights(s, -0.3, 0.3);
-  const Relief serial = MakeRelief(s.Vertices, s.Faces, heights);
-  const Relief threaded = MakeRelief(s.Vertices, s.Faces, heights, ThreadedFor(3));
-  EXPECT_EQ(serial.Places, threaded.Places);
-  EXPECT_EQ(serial.SmallestWall, threaded.SmallestWall);
 }
 
 TEST(ReliefHeights, AreLinearOrOfTwoLevelsWithAFlank)

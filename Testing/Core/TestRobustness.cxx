@@ -39,7 +39,8 @@ Surface Slivers(double aspect)
 TEST(Robustness, HugeStepsEndAtTheMean)
 {
   for (const Surface& s : { Icosphere(3), Strip(16, 16), Tetrahedron(), ThreeFins(4), Torus(20, 10),
-         Joined(Disk(5), Icosphere(2)) })
+         Joined(Disk(5), Icosphere(2)),
+         MakeSurface({ { 0, 0, 0 }, { 3, 0, 0 }, { 1, 2, 0 } }, { { 0, 1, 2 } }) })
   {
     const auto assembler = MakeAssembler(s);
     const TriangleMesh& mesh = assembler->Mesh();
@@ -169,16 +170,6 @@ TEST(Robustness, NoColumnsAreNothingToDo)
   }
 }
 
-TEST(Robustness, OneTriangleTendsToItsMean)
-{
-  const auto assembler =
-    MakeAssembler(MakeSurface({ { 0, 0, 0 }, { 3, 0, 0 }, { 1, 2, 0 } }, { { 0, 1, 2 } }));
-  Values start(3, 1);
-  start << 1, 2, 6;
-  const Values u = Diffuse(assembler, PointData::FromValues(start), 1e5, 10);
-  EXPECT_LT((u.array() - 3.0).abs().maxCoeff(), 1e-12);
-}
-
 TEST(Robustness, SliverTrianglesGiveFiniteConservedResults)
 {
   for (const double aspect : { 1e2, 1e6, 1e10, 1e13 })
@@ -217,22 +208,6 @@ TEST(Robustness, OneSliverAmongGoodTrianglesDoesNoHarm)
       Diffuse(assembler, PointData::FromValues(start), 0.05, 5, 0.0, Scheme::BackwardEuler);
     EXPECT_LE(u.cwiseAbs().maxCoeff(), 1.0) << height;
     EXPECT_NEAR(Total(mesh, u, 0), Total(mesh, start, 0), 1e-12 * Total(mesh, start.cwiseAbs(), 0));
-  }
-}
-
-TEST(Robustness, ResultsDoNotDependOnTheSizeOfTheSurface)
-{
-  const Surface s = Icosphere(2);
-  const auto original = MakeAssembler(s);
-  const Values start = Noise(original->Mesh());
-  const Values u = Diffuse(original, PointData::FromValues(start), 0.1, 5);
-  for (const int exponent : { -498, 498 }) // 1e-150, 1e150
-  {
-    const auto assembler = MakeAssembler(Scaled(s, std::ldexp(1.0, exponent)));
-    auto settings = HeatSettings(original->Mesh(), 0.02);
-    const auto heat = MakeHeat(assembler, PointData::FromValues(start), settings);
-    Advance(*heat, 5);
-    EXPECT_TRUE(heat->State() == u) << exponent;
   }
 }
 
@@ -276,16 +251,6 @@ TEST(Robustness, AnOffsetOfTheDataCostsNoAccuracy)
     const Values difference = (run(offset).array() - offset).matrix() - run(0.0);
     EXPECT_LT(difference.cwiseAbs().maxCoeff(), 2e-6); // ten roundings of 1e9
   }
-}
-
-TEST(Robustness, ModelsReportASolverThatDoesNotConverge)
-{
-  const auto assembler = MakeAssembler(Icosphere(3));
-  std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver();
-  solver->SetLimits({ 1e-10, 3 });
-  const auto heat = MakeHeat(assembler, PointData::FromValues(Noise(assembler->Mesh())),
-    HeatSettings(assembler->Mesh(), 1.0), solver);
-  EXPECT_THROW(heat->Advance(ProgressMonitor()), NotConverged);
 }
 
 TEST(Robustness, DirectionsWithoutDiffusionAcrossStayFinite)

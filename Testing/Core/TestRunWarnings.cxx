@@ -99,12 +99,6 @@ TEST(RunWarnings, AFactorisationAboveTheToleranceIsReported)
     { "linear solver missed its tolerance in 10 of 10 steps", "largest relative residual" });
 }
 
-TEST(RunWarnings, AConvergedRunIsSilent)
-{
-  EXPECT_TRUE(WarningsOf(RunInput(Testing::Icosphere(3)), HeatSettings()).empty());
-  EXPECT_TRUE(WarningsOf(NoisyNormals(), HarmonicMapSettings()).empty());
-}
-
 TEST(RunWarnings, TangentSpacesInWhichNeitherPreconditionerConvergesAreReported)
 {
   HarmonicMapSettings settings;

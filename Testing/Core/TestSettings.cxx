@@ -162,26 +162,6 @@ TEST(Settings, EverySettingHasANameOfItsOwnAndADocumentation)
   }
 }
 
-TEST(Settings, DefaultsHaveNoProblem)
-{
-  for (const Maker& make : AllModels)
-  {
-    Problems problems;
-    make()->Check(nullptr, problems);
-    EXPECT_TRUE(problems.empty()) << problems.front();
-  }
-}
-
-TEST(Settings, AProblemNamesTheSettingItsValueAndTheAllowedValues)
-{
-  HeatSettings settings;
-  settings.TimeStep = -2.5;
-  Problems problems;
-  settings.Check(nullptr, problems);
-  ASSERT_EQ(problems.size(), 1u);
-  EXPECT_EQ(problems.front(), "TimeStep is -2.5; allowed: finite numbers above 0");
-}
-
 TEST(Settings, ChoicesListTheWordsThatTheModelAllows)
 {
   TotalVariationSettings settings;

@@ -21,25 +21,6 @@ Values SteadyState(
 
 } // namespace
 
-TEST(SteadyState, WithoutAnythingHeldEveryComponentEndsAtItsMean)
-{
-  const auto assembler = MakeAssembler(Joined(Disk(4), Icosphere(2)));
-  const TriangleMesh& mesh = assembler->Mesh();
-  const Values start = Noise(mesh, 2);
-  const Values u = SteadyState(assembler, PointData::FromValues(start));
-  for (Index c = 0; c < 2; ++c)
-  {
-    const Index begin = mesh.ComponentsBegin()[c];
-    const Index size = mesh.ComponentsBegin()[c + 1] - begin;
-    const auto areas = mesh.ControlAreas().segment(begin, size);
-    for (const Eigen::Index k : { 0, 1 })
-    {
-      const double mean = areas.dot(start.col(k).segment(begin, size)) / areas.sum();
-      EXPECT_LT((u.col(k).segment(begin, size).array() - mean).abs().maxCoeff(), 1e-14);
-    }
-  }
-}
-
 TEST(SteadyState, ComponentsHeldAndNotHeldStandSideBySide)
 {
   const auto assembler = MakeAssembler(Joined(Disk(4), Icosphere(2)));

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NeedleMeshes.h"
-#include "ThreadedFor.h"
 
 #include "Core/Foundation/SymmetricModes.h"
 #include "Core/Operators/CotanWeights.h"
@@ -183,23 +182,6 @@ TEST(StrongLines, AreCutWhereTheyAreLong)
     EXPECT_LT(
       (path.Matrix * z - r).cwiseAbs().unaryExpr([](double x) { return x > 1e-3; }).count(), 12);
   }
-}
-
-TEST(StrongLines, GiveTheSameBitsOnAnyThreads)
-{
-  const SparseMatrix matrix = HeatMatrix(LatitudeLongitudeSphere(250, 250), 10.0);
-  LinesOf serial(matrix);
-  const ThreadedFor threads(3);
-  LinesOf threaded(matrix, threads);
-  ASSERT_GT(serial.Lines.Vertices().size(), 8192U);
-  EXPECT_EQ(serial.Lines.Vertices(), threaded.Lines.Vertices());
-  const Values r = Random(static_cast<Index>(matrix.rows()), 3);
-  EXPECT_TRUE(serial.Precondition(r) == threaded.Precondition(r));
-  const std::vector<float> single(r.rows(), 0.25F);
-  std::vector<float> a(serial.Lines.Vertices().size()), b(a.size());
-  EXPECT_EQ(serial.Lines.Correct(serial.Lines.Vertices(), single.data(), a.data()),
-    threaded.Lines.Correct(serial.Lines.Vertices(), single.data(), b.data()));
-  EXPECT_EQ(a, b);
 }
 
 // Round-off would be taken for the mean of a needle's ends: iterations would be ten times as many.

@@ -29,13 +29,6 @@ struct Scales
   double Noise = 1.0, Integration = 4.0; ///< in mean edge lengths; 0: off
 };
 
-std::shared_ptr<LinearSolver> Iterative(double tolerance, const ParallelFor& parallel = SerialFor())
-{
-  std::shared_ptr<LinearSolver> solver = MakeConjugateGradientSolver(parallel);
-  solver->SetLimits({ tolerance, 100000 });
-  return solver;
-}
-
 std::unique_ptr<StructureTensor> MakeStructure(std::shared_ptr<const Assembler> assembler,
   Scales scales = {}, double tolerance = 1e-6, const ParallelFor& parallel = SerialFor())
 {

@@ -12,7 +12,6 @@
 #include "Interpolation.h"
 #include "Meshes.h"
 #include "NoisySurfaces.h"
-#include "ThreadedFor.h"
 
 #include <gtest/gtest.h>
 
@@ -417,26 +416,6 @@ TEST(SurfaceDenoising, FollowsRotationsTranslationsAndScalesOfTheSurface)
     LargestDistance(Denoised(Moved(noisy, offset)), Moved(result, offset)), Rounding * size);
 }
 
-TEST(SurfaceDenoising, DoesNotDependOnTheNumberOfThreads)
-{
-  // so large that loops over vertices have several blocks
-  for (const Surface& noisy : { NoisyAlongNormals(LBlock(32), 0.3),
-         NoisyAlongNormals(RoughTorus(80), 0.2), WithCorrelatedNoise(Icosphere(5), 0.3, 2.0) })
-  {
-    const Surface one = Denoised(noisy);
-    const ThreadedFor threads(3);
-    EXPECT_EQ(Denoised(noisy, DenoisingSettings(), {}, nullptr, threads).Vertices, one.Vertices);
-  }
-}
-
-TEST(SurfaceDenoising, DoesNotDependOnTheNumberingOfPoints)
-{
-  const Surface noisy = NoisyAlongNormals(LBlock(12), 0.3);
-  const auto number = Permutation(noisy.NumberOfVertices(), 3);
-  const Surface expected = Renumbered(Denoised(noisy), number);
-  EXPECT_EQ(LargestDistance(Denoised(Renumbered(noisy, number)), expected), 0.0);
-}
-
 TEST(SurfaceDenoising, ScaledCopiesTogetherAreEachDenoisedAsAlone)
 {
   const Surface noisy = NoisyAlongNormals(LBlock(12), 0.2);
@@ -553,16 +532,6 @@ TEST(SurfaceDenoising, ComponentsOfDifferentTypesKeepTheirs)
   const Surface alone = Joined(Denoised(block), Denoised(rough));
   EXPECT_LT(LargestDistance(together, alone), 1e-12);
   EXPECT_EQ(report.Type, SurfaceType::Automatic);
-}
-
-TEST(SurfaceDenoising, SurfacesWithoutNoiseHaveNoType)
-{
-  DenoisingReport report;
-  report.Type = SurfaceType::CAD;
-  Denoised(Icosphere(4), DenoisingSettings(), {}, &report);
-  EXPECT_EQ(report.Type, SurfaceType::Automatic);
-  EXPECT_EQ(report.NoiseLevel, 0.0);
-  EXPECT_EQ(report.FarVertices, 0);
 }
 
 // Also of a surface without noise, of which nothing else moves.
@@ -781,25 +750,6 @@ TEST(SurfaceDenoising, AbortEndsTheWorkOnALargeFanSoon)
   }
 }
 
-TEST(SurfaceDenoising, FixedPointsStayAndOthersMove)
-{
-  const Surface noisy = NoisyAlongNormals(LBlock(12), 0.3);
-  std::vector<char> fixed(static_cast<std::size_t>(noisy.NumberOfVertices()), 0);
-  for (Index i = 0; i < noisy.NumberOfVertices(); i += 3)
-  {
-    fixed[i] = 1;
-  }
-  const Surface result = Denoised(noisy, DenoisingSettings(), fixed);
-  Index moved = 0;
-  for (Index i = 0; i < noisy.NumberOfVertices(); ++i)
-  {
-    const double distance = (result.Vertices.row(i) - noisy.Vertices.row(i)).norm();
-    EXPECT_TRUE(!fixed[i] || distance < 1e-14) << i;
-    moved += distance > 1e-3;
-  }
-  EXPECT_GT(moved, noisy.NumberOfVertices() / 2);
-}
-
 TEST(SurfaceDenoising, FixedPointsDoNotEndTheWorkOnOthers)
 {
   const Surface sphere = Icosphere(5);
@@ -853,30 +803,6 @@ TEST(SurfaceDenoising, LargerNoiseLevelsRemoveMoreAndTheTypeCanBeGiven)
   settings.Type = SurfaceType::CAD;
   Denoised(noisy, settings, {}, &report);
   EXPECT_EQ(report.Type, SurfaceType::CAD);
-}
-
-TEST(SurfaceDenoising, AbortEndsTheWork)
-{
-  for (const Surface& noisy :
-    { NoisyAlongNormals(LBlock(6), 0.3), WithCorrelatedNoise(Icosphere(5), 0.3, 2.0) })
-  {
-    const TriangleMesh mesh(noisy.Vertices, noisy.Faces);
-    const Points points = GatherVertices(mesh, noisy.Vertices);
-    const auto denoise = [&](const ProgressMonitor::Callback& report)
-    {
-      return DenoiseSurface(
-        mesh, points, {}, DenoisingSettings(), nullptr, SerialFor(), ProgressMonitor(report));
-    };
-    int all = 0;
-    const Points whole = denoise([&](double) { return ++all > 0; });
-    for (const int last : { 5, all / 3, 2 * all / 3, all })
-    {
-      int reports = 0;
-      EXPECT_THROW(denoise([&](double) { return ++reports < last; }), Aborted);
-      EXPECT_EQ(reports, last);
-    }
-    EXPECT_EQ(denoise([](double) { return true; }), whole);
-  }
 }
 
 namespace

@@ -5,6 +5,7 @@
 #include "Core/Models/NonlinearDiffusion.h"
 #include "Core/Models/TotalVariation/CrouzeixRaviart.h"
 #include "Core/Models/TotalVariation/TotalVariationFlow.h"
+#include "Core/Surface/TangentVectors.h"
 #include "Meshes.h"
 
 #include <cmath>
@@ -73,6 +74,13 @@ inline std::unique_ptr<Model> MakeOnEdges(std::shared_ptr<const Assembler> assem
     std::move(assembler), edges, std::move(data), std::move(conserved),
     [&](PointData edgeData) { return MakeExact(onEdges, std::move(edgeData), settings, parallel); },
     parallel);
+}
+
+/// A frame from a fixed vector on each triangle.
+inline TangentVectors SkewFrames(const TriangleMesh& mesh, const Surface& s)
+{
+  const Points directions = Eigen::RowVector3d(1.0, 2.0, 3.0).replicate(s.NumberOfTriangles(), 1);
+  return TangentVectorsFromTriangleVectors(mesh, s.Vertices, s.Faces, directions);
 }
 
 /// 1 within `angle` of the north pole of a unit sphere, 0 elsewhere.

@@ -8,6 +8,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
+#include "vtkFVMHeatFilter.h"
 #include "vtkIdList.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleVectorKey.h"
@@ -385,6 +386,21 @@ unsigned long Listen(vtkAlgorithm* filter, Function function)
 {
   auto listener = vtkSmartPointer<vtkCommand>::Take(new ProgressListener<Function>(function));
   return filter->AddObserver(vtkCommand::ProgressEvent, listener);
+}
+
+inline vtkSmartPointer<vtkFVMHeatFilter> MakeHeatFilter(vtkPolyData* surface)
+{
+  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
+  filter->SetInputData(surface);
+  return filter;
+}
+
+/// The first error of an update; empty if there is none.
+inline std::string ErrorOf(vtkPolyDataAlgorithm* filter)
+{
+  const Messages messages(filter);
+  filter->Update();
+  return messages.Errors.empty() ? "" : messages.Errors[0];
 }
 
 } // namespace FilterTest

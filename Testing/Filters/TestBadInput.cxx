@@ -110,27 +110,6 @@ void ExpectPropertyError(const char* property, void (vtkFVMHeatFilter::*set)(Val
 
 } // namespace
 
-TEST(BadInput, NoSurfaceIsAnError)
-{
-  ExpectError({ "empty" }, [](vtkFVMHeatFilter*, vtkPolyData* input) { input->Initialize(); });
-  ExpectError({ "no polygons" },
-    [](vtkFVMHeatFilter*, vtkPolyData* input) { input->SetPolys(vtkNew<vtkCellArray>()); });
-  ExpectError({ "no polygons" },
-    [](vtkFVMHeatFilter*, vtkPolyData* input)
-    {
-      input->SetLines(input->GetPolys());
-      input->SetPolys(nullptr);
-    });
-}
-
-TEST(BadInput, AMissingConnectionDoesNotCrash)
-{
-  vtkNew<vtkFVMHeatFilter> filter;
-  Messages ofExecutive(filter->GetExecutive());
-  filter->Update();
-  EXPECT_EQ(ofExecutive.Errors.size(), 1u);
-}
-
 TEST(BadInput, ArraysThatCannotBeUsedAreErrors)
 {
   ExpectError({ "InputArray", "\"nosuch\"" },
@@ -300,33 +279,6 @@ TEST(BadInput, AllProblemsAreReportedTogether)
 
 TEST(BadInput, ContradictorySettingsAreErrors)
 {
-  ExpectError({ "FWHM", "FidelityWeight is 0.5", "allowed" },
-    [](vtkFVMHeatFilter* filter, vtkPolyData*)
-    {
-      filter->SetFWHM(2.0);
-      filter->SetFidelityWeight(0.5);
-    });
-  ExpectError({ "FWHM", "AutomaticFidelity is 1", "allowed" },
-    [](vtkFVMHeatFilter* filter, vtkPolyData*)
-    {
-      filter->SetFWHM(2.0);
-      filter->AutomaticFidelityOn();
-    });
-  ExpectError({ "FWHM", "AlongDiffusivity is 2", "AcrossDiffusivity is 3", "allowed" },
-    [](vtkFVMHeatFilter* filter, vtkPolyData* input)
-    {
-      filter->SetFWHM(2.0);
-      filter->SetAlongDiffusivity(2.0);
-      filter->SetAcrossDiffusivity(3.0);
-      AddPointArray(input, "e1", 3, Rough);
-      SetInputArray(filter, 2, "e1");
-    });
-  ExpectError({ "FWHM", "Mode is 1", "allowed" },
-    [](vtkFVMHeatFilter* filter, vtkPolyData*)
-    {
-      filter->SetFWHM(2.0);
-      filter->SetModeToSteadyState();
-    });
   ExpectError({ "AlongDiffusivity", "5", "AcrossDiffusivity", "1", "DirectionArray", "allowed" },
     [](vtkFVMHeatFilter* filter, vtkPolyData*) { filter->SetAlongDiffusivity(5.0); });
   ExpectError({ "HoldKnownValues", "on", "allowed" },

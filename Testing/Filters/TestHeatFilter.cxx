@@ -11,18 +11,6 @@
 
 using namespace FilterTest;
 
-namespace
-{
-
-vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
-{
-  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
-  filter->SetInputData(surface);
-  return filter;
-}
-
-} // namespace
-
 TEST(HeatFilter, UsePaperSchemeSetsThePapersReadingAndNothingElse)
 {
   vtkNew<vtkFVMHeatFilter> filter;
@@ -62,10 +50,10 @@ TEST(HeatFilter, ToleranceBoundsTheErrorOfTenStepsAlsoBesideALargeHole)
         f->SetComponent(i, 0, vtkMath::Nan());
       }
     }
-    const auto exact = MakeFilter(sphere);
+    const auto exact = MakeHeatFilter(sphere);
     exact->SetSolverToDirect();
     exact->Update();
-    const auto filter = MakeFilter(sphere);
+    const auto filter = MakeHeatFilter(sphere);
     filter->SetSolverToConjugateGradient();
     filter->Update();
     const double error = LargestDifference(Result(filter), Result(exact)) / filter->GetValueRange();
@@ -95,8 +83,8 @@ TEST(HeatFilter, ToleranceBoundsTheErrorOnSmallComponentsToo)
   spheres->GetPointData()->SetActiveScalars("f");
   for (const bool isSteady : { false, true })
   {
-    const auto exact = MakeFilter(spheres);
-    const auto filter = MakeFilter(spheres);
+    const auto exact = MakeHeatFilter(spheres);
+    const auto filter = MakeHeatFilter(spheres);
     for (vtkFVMHeatFilter* const each : { exact.Get(), filter.Get() })
     {
       each->SetTimeStep(0.01);

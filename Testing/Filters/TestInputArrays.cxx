@@ -18,13 +18,6 @@ const std::vector<int> NumericTypes{ VTK_BIT, VTK_CHAR, VTK_SIGNED_CHAR, VTK_UNS
   VTK_SHORT, VTK_UNSIGNED_SHORT, VTK_INT, VTK_UNSIGNED_INT, VTK_LONG, VTK_UNSIGNED_LONG,
   VTK_LONG_LONG, VTK_UNSIGNED_LONG_LONG, VTK_ID_TYPE, VTK_FLOAT, VTK_DOUBLE };
 
-vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
-{
-  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
-  filter->SetInputData(surface);
-  return filter;
-}
-
 bool InHole(vtkIdType i)
 {
   return i % 10 > 5 && i % 10 < 9 && i / 10 > 3 && i / 10 < 7;
@@ -37,7 +30,7 @@ TEST(InputArrays, DataAndWeightsOfAnyNumericTypeGiveTheSameResult)
   auto plane = Grid(10, 10);
   const auto value = [](vtkIdType i, int) { return i % 3 == 0; };
   AddPointArray(plane, "f", 1, value);
-  auto reference = MakeFilter(plane);
+  auto reference = MakeHeatFilter(plane);
   SetInputArray(reference, 0, "f");
   SetInputArray(reference, 5, "f");
   reference->SetFidelityWeight(0.5);
@@ -45,7 +38,7 @@ TEST(InputArrays, DataAndWeightsOfAnyNumericTypeGiveTheSameResult)
   for (const int type : NumericTypes)
   {
     AddPointArray(plane, "typed", 1, value, type);
-    auto filter = MakeFilter(plane);
+    auto filter = MakeHeatFilter(plane);
     SetInputArray(filter, 0, "typed");
     SetInputArray(filter, 5, "typed"); // weights
     filter->SetFidelityWeight(0.5);
@@ -71,7 +64,7 @@ TEST(InputArrays, DataMayBeStoredByComponent)
     }
   }
   plane->GetPointData()->AddArray(byComponent);
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   filter->Update();
   const auto reference = Copy(Result(filter));
   SetInputArray(filter, 0, "soa");
@@ -87,7 +80,7 @@ TEST(InputArrays, MasksOfAnyNumericTypeHaveTheSameEffect)
   for (const int mode :
     { vtkFVMHeatFilter::MASK_MODE_INPAINT, vtkFVMHeatFilter::MASK_MODE_EXCLUDE })
   {
-    auto reference = MakeFilter(plane);
+    auto reference = MakeHeatFilter(plane);
     SetInputArray(reference, 1, "mask");
     reference->SetMaskMode(mode);
     reference->SetFidelityWeight(1.0);
@@ -100,7 +93,7 @@ TEST(InputArrays, MasksOfAnyNumericTypeHaveTheSameEffect)
                                                                      : 77.0;
       AddPointArray(
         plane, "typed", 1, [&](vtkIdType i, int) { return InHole(i) ? missing : 0.0; }, type);
-      auto filter = MakeFilter(plane);
+      auto filter = MakeHeatFilter(plane);
       SetInputArray(filter, 1, "typed");
       filter->SetMaskMode(mode);
       filter->SetFidelityWeight(1.0);
@@ -116,7 +109,7 @@ TEST(InputArrays, FixedTakesPrecedenceOverMissing)
   AddRough(plane);
   AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
   AddPointArray(plane, "fixed", 1, [](vtkIdType i, int) { return i == 66; });
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   SetInputArray(filter, 1, "mask");
   SetInputArray(filter, 3, "fixed");
   filter->Update();
@@ -130,7 +123,7 @@ TEST(InputArrays, AMaskWithoutEffectIsOneWarning)
   AddRough(plane);
   AddPointArray(plane, "empty", 1, [](vtkIdType, int) { return 0.0; });
   AddPointArray(plane, "mask", 1, [](vtkIdType i, int) { return InHole(i); });
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   Messages messages(filter);
   SetInputArray(filter, 1, "mask");
   filter->Update(); // missing points start from the mean
@@ -160,7 +153,7 @@ TEST(InputArrays, MayBeOnPointsOrOtherwiseOnCells)
   plane->GetCellData()->AddArray(MakeArray(VTK_DOUBLE, "east", plane->GetNumberOfCells(), 3, east));
   const auto run = [&](int association)
   {
-    auto filter = MakeFilter(plane);
+    auto filter = MakeHeatFilter(plane);
     filter->SetAcrossDiffusivity(0.0);
     filter->SetInputArrayToProcess(0, 0, 0, either, "f");
     filter->SetInputArrayToProcess(2, 0, 0, association, "east");
@@ -179,7 +172,7 @@ TEST(InputArrays, AMissingArrayIsReportedOnce)
 {
   auto plane = Grid(10, 10);
   AddRough(plane);
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   filter->SetAlongDiffusivity(2.0);
   SetInputArray(filter, 2, "nosuch");
   Messages messages(filter);
@@ -200,7 +193,7 @@ TEST(InputArrays, OfCellsAreTheDefaultWithoutPointScalarsAndNamedIfTheAssociatio
     EXPECT_EQ(messages.Errors.size(), 1u);
     return messages.Errors.empty() ? std::string() : messages.Errors[0];
   };
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   EXPECT_NE(errorOf(filter).find("no active point or cell Scalars"), std::string::npos);
   const auto array = MakeArray(VTK_DOUBLE, "ofCells", plane->GetNumberOfCells(), 1, Rough);
   plane->GetCellData()->SetScalars(array);

@@ -20,13 +20,6 @@ using namespace FilterTest;
 namespace
 {
 
-vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
-{
-  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
-  filter->SetInputData(surface);
-  return filter;
-}
-
 double Color(vtkIdType i, int k)
 {
   return std::floor(127.5 + 127.0 * Rough(i, k));
@@ -42,7 +35,7 @@ TEST(OutputArrays, TheOutputIsTheInputWithOneMoreActiveArray)
   plane->GetCellData()->AddArray(
     MakeArray(VTK_INT, "ofCells", plane->GetNumberOfCells(), 1, Rough));
   plane->GetFieldData()->AddArray(MakeArray(VTK_INT, "ofField", 3, 1, Rough));
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   filter->Update();
   vtkPolyData* output = filter->GetOutput();
   EXPECT_EQ(output->GetPoints(), plane->GetPoints());
@@ -62,7 +55,7 @@ TEST(OutputArrays, TheResultHasTheRequestedName)
   auto plane = Grid(6, 5);
   AddRough(plane);
   AddPointArray(plane, "unnamed", 1, Rough)->SetName(nullptr);
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   filter->SetResultArrayName("u");
   filter->Update();
   EXPECT_NE(Result(filter, "u"), nullptr);
@@ -94,7 +87,7 @@ TEST(OutputArrays, PrecisionFollowsTheInputOrIsSet)
     { "double", VTK_DOUBLE }, { "int", VTK_DOUBLE }, { "char", VTK_DOUBLE } };
   for (const auto& [name, type] : types)
   {
-    auto filter = MakeFilter(plane);
+    auto filter = MakeHeatFilter(plane);
     SetInputArray(filter, 0, name.c_str());
     const std::string result = name + "Diffused";
     filter->Update();
@@ -140,7 +133,7 @@ TEST(OutputArrays, ColorsOfAnyNumberOfComponentsCarryAlphaOver)
   for (int components = 1; components <= 4; ++components)
   {
     vtkDataArray* colors = AddPointArray(sphere, "rgb", components, Color, VTK_UNSIGNED_CHAR);
-    auto filter = MakeFilter(sphere);
+    auto filter = MakeHeatFilter(sphere);
     SetInputArray(filter, 0, "rgb");
     filter->Update();
     vtkDataArray* result = Result(filter, "rgbDiffused");
@@ -167,7 +160,7 @@ TEST(OutputArrays, ColorsAreClampedIfTheStateLeavesTheirRange)
   auto sphere = Sphere(4);
   AddPointArray(
     sphere, "black", 1, [](vtkIdType i, int) { return i == 700 ? 255.0 : 0.0; }, VTK_UNSIGNED_CHAR);
-  auto filter = MakeFilter(sphere);
+  auto filter = MakeHeatFilter(sphere);
   SetInputArray(filter, 0, "black");
   filter->SetTimeStep(3.0); // second order overshoots at a large step
   filter->SetNumberOfTimeSteps(1);
@@ -195,7 +188,7 @@ TEST(OutputArrays, PointsWithoutTrianglesKeepTheirValueInEveryType)
   {
     AddPointArray(
       plane, "f", 2, [](vtkIdType i, int k) { return i == 30 ? 101.0 + k : Color(i, k); }, type);
-    auto filter = MakeFilter(plane);
+    auto filter = MakeHeatFilter(plane);
     SetInputArray(filter, 0, "f");
     Messages messages(filter);
     filter->Update();
@@ -209,7 +202,7 @@ TEST(OutputArrays, PrecisionsHaveTheNumbersOfVTK)
 {
   auto plane = Grid(6, 5);
   AddPointArray(plane, "f", 1, Rough, VTK_FLOAT);
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   SetInputArray(filter, 0, "f");
   for (const auto& [precision, type] : { std::pair{ vtkAlgorithm::SINGLE_PRECISION, VTK_FLOAT },
          std::pair{ vtkAlgorithm::DOUBLE_PRECISION, VTK_DOUBLE },
@@ -230,7 +223,7 @@ TEST(OutputArrays, AResultDoesNotInheritTheRoleOfTheArrayThatItReplaces)
     AddPointArray(plane, "former", role == vtkDataSetAttributes::NORMALS ? 3 : 2, Rough);
     plane->GetPointData()->SetActiveAttribute("former", role);
     AddRough(plane);
-    auto filter = MakeFilter(plane);
+    auto filter = MakeHeatFilter(plane);
     filter->SetResultArrayName("former");
     Messages messages(filter);
     filter->Update();
@@ -252,7 +245,7 @@ TEST(OutputArrays, ReplacingTheInputArrayItselfIsNoWarning)
 {
   auto plane = Grid(6, 5);
   AddRough(plane);
-  auto filter = MakeFilter(plane);
+  auto filter = MakeHeatFilter(plane);
   filter->SetResultArrayName("f");
   Messages messages(filter);
   filter->Update();

@@ -77,13 +77,6 @@ double DistanceOf(Filter* filter, vtkIdType point, const std::array<double, 3>& 
   return std::sqrt(vtkMath::Distance2BetweenPoints(x, place.data()));
 }
 
-std::string ErrorOf(Filter* filter)
-{
-  const Messages messages(filter);
-  filter->Update();
-  return messages.Errors.empty() ? "" : messages.Errors[0];
-}
-
 bool Has(const std::string& text, const char* part)
 {
   return text.find(part) != std::string::npos;

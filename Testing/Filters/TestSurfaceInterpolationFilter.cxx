@@ -127,13 +127,6 @@ double LargestError(Filter* filter, const char* name)
   return u ? largest : NaN;
 }
 
-std::string ErrorOf(Filter* filter)
-{
-  const Messages messages(filter);
-  filter->Update();
-  return messages.Errors.empty() ? "" : messages.Errors[0];
-}
-
 } // namespace
 
 /// As files of triangles without neighbours store them.

@@ -45,14 +45,6 @@ vtkPolyData* Boundaries(Filter* filter)
   return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(2));
 }
 
-/// The first error of an update; empty if there is none.
-std::string ErrorOf(Filter* filter)
-{
-  const Messages messages(filter);
-  filter->Update();
-  return messages.Errors.empty() ? "" : messages.Errors[0];
-}
-
 /// A sphere with a cap of 60 degrees, 2 in a field of -1.
 vtkSmartPointer<vtkPolyData> SphereWithCap(int levels)
 {
@@ -269,19 +261,13 @@ TEST(SegmentationFilter, PropertiesTakeTheMemoryOfTheMeansThatAreSet)
   EXPECT_STREQ(filter->GetUnitsAsString(), "Natural");
 }
 
-TEST(SegmentationFilter, PrintSelfNamesMeansAndEachPropertyOnce)
+TEST(SegmentationFilter, PrintSelfNamesMeans)
 {
   auto filter = MakeFilter(SphereWithCap(3));
   filter->SetMean(2, 0, -7.5);
   std::ostringstream text;
   filter->Print(text);
   EXPECT_NE(text.str().find("Mean of region 2, component 0: -7.5"), std::string::npos);
-  for (const char* const name : { "MergeCoincidentPoints: ", "MergeTolerance: " })
-  {
-    const std::size_t first = text.str().find(name);
-    ASSERT_NE(first, std::string::npos) << name;
-    EXPECT_EQ(text.str().find(name, first + 1), std::string::npos) << name;
-  }
 }
 
 TEST(SegmentationFilter, BlocksWithOtherNumbersOfComponentsHaveAllColumns)

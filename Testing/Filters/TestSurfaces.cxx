@@ -15,13 +15,6 @@ using namespace FilterTest;
 namespace
 {
 
-vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
-{
-  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
-  filter->SetInputData(surface);
-  return filter;
-}
-
 /// Two adjacent grids that meet at x = 5, each with its own points there: an unmerged seam.
 vtkSmartPointer<vtkPolyData> TwoSheets()
 {
@@ -85,7 +78,7 @@ TEST(Surfaces, DefectsAreHandledAndReportedInOneWarningWithCounts)
   for (const int solver : { vtkFVMHeatFilter::SOLVER_DIRECT,
          vtkFVMHeatFilter::SOLVER_CONJUGATE_GRADIENT, vtkFVMHeatFilter::SOLVER_MULTIGRID })
   {
-    auto filter = MakeFilter(surface);
+    auto filter = MakeHeatFilter(surface);
     SetInputArray(filter, 0, "f");
     filter->SetSolver(solver);
     Messages messages(filter);
@@ -128,7 +121,7 @@ TEST(Surfaces, PointsThatNoTriangleUsesAreCountedWithoutAWarning)
   AddRough(sphere);
   AddPointArray(sphere, "mask", 1,
     [&](vtkIdType i, int) { return i == 0 || i + 1 == sphere->GetNumberOfPoints() ? 1.0 : 0.0; });
-  auto filter = MakeFilter(sphere);
+  auto filter = MakeHeatFilter(sphere);
   Messages messages(filter);
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfUnusedPoints(), strays);
@@ -149,7 +142,7 @@ TEST(Surfaces, OfZeroAreaKeepTheirValues)
   vtkDataArray* f = AddRough(surface);
   for (const int mode : { vtkFVMHeatFilter::MODE_TIME_STEPS, vtkFVMHeatFilter::MODE_STEADY_STATE })
   {
-    auto filter = MakeFilter(surface);
+    auto filter = MakeHeatFilter(surface);
     filter->SetMode(mode);
     Messages messages(filter);
     filter->Update();
@@ -165,7 +158,7 @@ TEST(Surfaces, FullyExcludedKeepTheInputAndFullyMissingAreAnError)
   vtkDataArray* f = AddRough(surface);
   AddPointArray(surface, "all", 1, [](vtkIdType, int) { return 1.0; });
   AddPointArray(surface, "nan", 1, [](vtkIdType, int) { return std::nan(""); });
-  auto filter = MakeFilter(surface);
+  auto filter = MakeHeatFilter(surface);
   SetInputArray(filter, 1, "all");
   filter->SetMaskModeToExclude();
   {
@@ -198,10 +191,10 @@ TEST(Surfaces, MergedPointsAreOne)
   AddPlaceData(sheets);
   auto whole = Grid(11, 6);
   AddPlaceData(whole);
-  auto reference = MakeFilter(whole);
+  auto reference = MakeHeatFilter(whole);
   reference->SetUnitsToAbsolute();
   reference->Update();
-  auto filter = MakeFilter(sheets);
+  auto filter = MakeHeatFilter(sheets);
   filter->SetUnitsToAbsolute();
   filter->MergeCoincidentPointsOn();
   Messages messages(filter);
@@ -251,7 +244,7 @@ TEST(Surfaces, WhoseSeamsCoincideUpToRoundOffAreReportedWithTheToleranceThatJoin
     torus->GetPoints()->SetPoint(i, radius * std::cos(u), radius * std::sin(u), std::sin(v));
   }
   AddPlaceData(torus);
-  auto filter = MakeFilter(torus);
+  auto filter = MakeHeatFilter(torus);
   Messages messages(filter);
   filter->Update();
   ASSERT_EQ(messages.Warnings.size(), 1u);
@@ -291,7 +284,7 @@ TEST(Surfaces, MergedPointsWithDifferentDataTakeTheirMeanAndKeepTheSum)
 {
   auto sheets = TwoSheets();
   AddPointArray(sheets, "f", 1, [](vtkIdType i, int) { return i < 36 ? 1.0 : 3.0; });
-  auto filter = MakeFilter(sheets);
+  auto filter = MakeHeatFilter(sheets);
   SetInputArray(filter, 0, "f");
   filter->MergeCoincidentPointsOn();
   filter->GenerateTimeStepsOn();
@@ -337,7 +330,7 @@ TEST(Surfaces, PartitionsOfStripsAreOneSurface)
   filter->Update();
   const auto whole = Grid(7, 5);
   AddPlaceData(whole);
-  const auto reference = MakeFilter(whole);
+  const auto reference = MakeHeatFilter(whole);
   reference->Update();
   auto* output = vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   for (int p = 0; p < 2; ++p)
@@ -409,7 +402,7 @@ TEST(Surfaces, CollinearPolygonsAreIgnoredTriangleByTriangle)
   auto surface = Grid(5, 5);
   surface->GetPolys()->InsertNextCell({ 0, 1, 2, 3, 4 });
   AddPlaceData(surface);
-  auto filter = MakeFilter(surface);
+  auto filter = MakeHeatFilter(surface);
   Messages messages(filter);
   filter->Update();
   EXPECT_TRUE(messages.Errors.empty());
@@ -423,7 +416,7 @@ TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInternallyOnly)
   const int n = 6;
   auto triangles = Grid(n, n);
   AddPlaceData(triangles);
-  auto reference = MakeFilter(triangles);
+  auto reference = MakeHeatFilter(triangles);
   reference->SetUnitsToAbsolute();
   reference->Update();
   // In unit squares both diagonals give the same result, since the cotan weight of a diagonal is 0.
@@ -468,7 +461,7 @@ TEST(Surfaces, QuadsPolygonsAndStripsAreTriangulatedInternallyOnly)
       surface->SetPolys(cells);
     }
     AddPlaceData(surface);
-    auto filter = MakeFilter(surface);
+    auto filter = MakeHeatFilter(surface);
     filter->SetUnitsToAbsolute();
     Messages messages(filter);
     filter->Update();
@@ -507,7 +500,7 @@ TEST(Surfaces, VertsAndLinesPassThroughAndCellDataStayWithTheirCells)
   for (vtkPolyData* surface : { plane.Get(), mixed.Get() })
   {
     AddRough(surface);
-    auto filter = MakeFilter(surface);
+    auto filter = MakeHeatFilter(surface);
     SetInputArray(filter, 2, "e1", true);
     filter->SetAlongDiffusivity(5.0);
     filter->Update();
@@ -537,8 +530,8 @@ TEST(Surfaces, GhostAndHiddenCellsAreIgnored)
     AddPointArray(
       rest, "f", 1, [&](vtkIdType i, int) { return f->GetComponent(i % 5 + 6 * (i / 5), 0); });
     rest->GetPointData()->SetActiveScalars("f");
-    auto filter = MakeFilter(plane);
-    auto reference = MakeFilter(rest);
+    auto filter = MakeHeatFilter(plane);
+    auto reference = MakeHeatFilter(rest);
     for (vtkFVMHeatFilter* each : { filter.Get(), reference.Get() })
     {
       each->SetUnitsToAbsolute();

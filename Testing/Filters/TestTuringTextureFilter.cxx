@@ -11,7 +11,6 @@
 
 #include <array>
 #include <utility>
-#include <vector>
 
 using namespace FilterTest;
 
@@ -34,45 +33,6 @@ double Low(vtkDataArray* array, int component = 0)
 double High(vtkDataArray* array, int component = 0)
 {
   return array->GetRange(component)[1];
-}
-
-/// The number of connected components of the set where the array is above `level`.
-int CountPieces(vtkPolyData* surface, vtkDataArray* array, double level)
-{
-  std::vector<vtkIdType> parent(surface->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    parent[i] = i;
-  }
-  const auto find = [&](vtkIdType i)
-  {
-    while (parent[i] != i)
-    {
-      i = parent[i] = parent[parent[i]];
-    }
-    return i;
-  };
-  const auto inside = [&](vtkIdType i) { return array->GetComponent(i, 0) > level; };
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType c = 0; c < surface->GetNumberOfCells(); ++c)
-  {
-    surface->GetCellPoints(c, corners);
-    for (int a = 0; a < 3; ++a)
-    {
-      const vtkIdType i = corners->GetId(a);
-      const vtkIdType j = corners->GetId((a + 1) % 3);
-      if (inside(i) && inside(j))
-      {
-        parent[find(i)] = find(j);
-      }
-    }
-  }
-  int pieces = 0;
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    pieces += inside(i) && find(i) == i;
-  }
-  return pieces;
 }
 
 /// The only error of an update, whose output must be the unchanged input.
@@ -118,27 +78,9 @@ TEST(TuringTextureFilter, GrowsSpotsFromNoise)
   EXPECT_NEAR(Low(Result(filter, "Texture")), 0.0, 1e-12);
   EXPECT_NEAR(High(Result(filter, "Texture")), 1.0, 1e-12);
   EXPECT_EQ(Result(filter, "TextureColor"), nullptr);
-  EXPECT_GT(CountPieces(sphere, u1, 4.2), 12);
   EXPECT_NEAR(
     filter->GetWavelength(), std::sqrt(4.0 * vtkMath::Pi()) / 8.0, 1e-3); // of coarse ones
   EXPECT_NEAR(filter->GetWavelengthGrowthRate(), 0.776, 1e-3);
-}
-
-TEST(TuringTextureFilter, IsKeptWhereTheSurfaceMovesByRoundOff)
-{
-  const auto moved = Sphere(4);
-  for (vtkIdType i = 0; i < moved->GetNumberOfPoints(); ++i)
-  {
-    double x[3];
-    moved->GetPoint(i, x);
-    moved->GetPoints()->SetPoint(i, x[0] + 1e-12, x[1] - 1e-12 * (i % 3), x[2] + 1e-12 * (i % 2));
-  }
-  const auto filter = MakeFilter(Sphere(4));
-  filter->Update();
-  vtkSmartPointer<vtkDataArray> expected = Result(filter, "u1");
-  filter->SetInputData(moved);
-  filter->Update();
-  EXPECT_LT(LargestDifference(Result(filter, "u1"), expected), 1e-6 * High(expected));
 }
 
 /// Whose default is a size of the surface where this has few edges.
@@ -272,14 +214,6 @@ TEST(TuringTextureFilter, EqualRatesPerCellGiveTheResultOfTheProperties)
   isotropic->Update();
   EXPECT_GT(LargestDifference(Result(byCell, "u1"), Result(isotropic, "u1")), 1e-3);
 
-  // Other rates in half of the cells change the result.
-  for (vtkIdType c = 0; c < sphere->GetNumberOfCells(); c += 2)
-  {
-    cells->SetComponent(c, 0, 60.0);
-  }
-  cells->Modified();
-  byCell->Update();
-  EXPECT_GT(LargestDifference(Result(byCell, "u1"), Result(byProperty, "u1")), 1e-3);
   byCell->IntrinsicDelaunayOn();
   EXPECT_TRUE(Contains(ErrorOf(byCell), "IntrinsicDelaunay is on but DiffusionRateArray"));
 }
@@ -331,18 +265,6 @@ TEST(TuringTextureFilter, RefinesMeshesThatAreTooCoarseForTheFeatures)
   EXPECT_EQ(
     output->GetPointData()->GetArray("Texture")->GetNumberOfTuples(), output->GetNumberOfPoints());
   EXPECT_NE(output->GetCellData()->GetArray("vtkOriginalCellIds"), nullptr);
-
-  // The same as that of a surface that was refined before
-  vtkNew<vtkPolyData> refined;
-  refined->CopyStructure(output);
-  vtkNew<vtkTuringTextureFilter> again;
-  again->SetInputData(refined);
-  again->SetNumberOfTimeSteps(20);
-  again->SetFeatureSize(0.4);
-  again->Update();
-  EXPECT_EQ(LargestDifference(output->GetPointData()->GetArray("u1"),
-              again->GetOutput()->GetPointData()->GetArray("u1")),
-    0.0);
 
   // An abort in the midst gives the unchanged input.
   filter->SetRefineTo(0.03);

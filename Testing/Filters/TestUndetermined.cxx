@@ -4,11 +4,9 @@
 
 #include "vtkCellData.h"
 #include "vtkFVMHeatFilter.h"
-#include "vtkHarmonicMapFilter.h"
 #include "vtkIntArray.h"
 #include "vtkIntrinsicTVFilter.h"
 #include "vtkMultiBlockDataSet.h"
-#include "vtkMumfordShahFilter.h"
 #include "vtkSurfaceSegmentationFilter.h"
 #include "vtkTensorDiffusionFilter.h"
 #include "vtkUnsignedCharArray.h"
@@ -160,31 +158,6 @@ TEST(Undetermined, IntegersKeepTheInput)
   }
 }
 
-TEST(Undetermined, NormalsAreNaN)
-{
-  const auto surface = TwoSpheres();
-  vtkNew<vtkDoubleArray> normals;
-  normals->SetName("n");
-  normals->SetNumberOfComponents(3);
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i)
-  {
-    double direction[3] = { 0.0, 0.0, 0.0 };
-    if (i < Half)
-    {
-      surface->GetPoint(i, direction);
-    }
-    normals->InsertNextTuple(direction);
-  }
-  surface->GetPointData()->AddArray(normals);
-  vtkNew<vtkHarmonicMapFilter> filter;
-  filter->SetInputData(surface);
-  SetInputArray(filter, 0, "n");
-  const Messages messages(filter);
-  filter->Update();
-  EXPECT_EQ(messages.Warnings.size(), 1u);
-  ExpectNaNOnSecondOnly(Result(filter, "nHarmonic"));
-}
-
 TEST(Undetermined, RegionsAreNoneAndHaveNoBoundary)
 {
   for (const bool onCells : { false, true })
@@ -221,22 +194,6 @@ TEST(Undetermined, RegionsAreNoneAndHaveNoBoundary)
       EXPECT_LT(curves->GetBounds()[1], 1.5) << "a curve on the second sphere";
     }
   }
-}
-
-TEST(Undetermined, MumfordShahHasNoEdgesThere)
-{
-  const auto surface = TwoSpheres();
-  AddStep<vtkDoubleArray>(surface, false, std::nan(""));
-  vtkNew<vtkMumfordShahFilter> filter;
-  filter->SetInputData(surface);
-  filter->Update();
-  vtkDataArray* const edges = filter->GetOutput()->GetPointData()->GetArray("Edges");
-  ASSERT_NE(edges, nullptr);
-  for (vtkIdType i = Half; i < 2 * Half; ++i)
-  {
-    EXPECT_EQ(edges->GetComponent(i, 0), 0.0);
-  }
-  ExpectNaNOnSecondOnly(filter->GetOutput()->GetPointData()->GetScalars());
 }
 
 TEST(Undetermined, ABlockOfThemLeavesTheOthersAsTheyAre)

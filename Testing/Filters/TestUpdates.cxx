@@ -26,13 +26,6 @@ using namespace FilterTest;
 namespace
 {
 
-vtkSmartPointer<vtkFVMHeatFilter> MakeFilter(vtkPolyData* surface)
-{
-  auto filter = vtkSmartPointer<vtkFVMHeatFilter>::New();
-  filter->SetInputData(surface);
-  return filter;
-}
-
 /// Records the progress reports of a filter.
 struct Reports
 {
@@ -73,7 +66,7 @@ TEST(Updates, ReportProgressEvenly)
     {
       for (const int mode : { 0, 1 })
       {
-        auto filter = MakeFilter(sphere);
+        auto filter = MakeHeatFilter(sphere);
         filter->SetSolver(solver);
         filter->SetNumberOfTimeSteps(steps);
         filter->SetMode(mode);
@@ -93,7 +86,7 @@ TEST(Updates, ReportProgressIfNearlyEverythingIsReused)
 {
   auto sphere = Sphere(4);
   AddRough(sphere);
-  auto filter = MakeFilter(sphere);
+  auto filter = MakeHeatFilter(sphere);
   filter->GenerateTimeStepsOn();
   filter->Update();
   Reports reports(filter);
@@ -112,9 +105,9 @@ TEST(Updates, AnAbortedUpdateIsRepeatedByTheNextOne)
 {
   auto sphere = Sphere(4);
   AddRough(sphere);
-  auto reference = MakeFilter(sphere);
+  auto reference = MakeHeatFilter(sphere);
   reference->Update();
-  auto filter = MakeFilter(sphere);
+  auto filter = MakeHeatFilter(sphere);
   const unsigned long tag = Listen(filter,
     [&](double amount)
     {
@@ -135,11 +128,11 @@ TEST(Updates, AnAbortedRunIsNotReused)
 {
   auto sphere = Sphere(4);
   AddRough(sphere);
-  auto reference = MakeFilter(sphere);
+  auto reference = MakeHeatFilter(sphere);
   reference->Update();
   for (const double when : { 0.01, 0.2, 0.25, 0.3, 0.6, 0.9 })
   {
-    auto filter = MakeFilter(sphere);
+    auto filter = MakeHeatFilter(sphere);
     filter->Update();
     const double step = filter->GetTimeStep();
     const unsigned long tag = Listen(filter,
@@ -164,7 +157,7 @@ TEST(Updates, ChangesOfTheOutputAloneRecomputeNothing)
 {
   auto sphere = Sphere(3);
   AddRough(sphere);
-  auto filter = MakeFilter(sphere);
+  auto filter = MakeHeatFilter(sphere);
   filter->Update();
   EXPECT_EQ(filter->GetNumberOfStepsComputed(), 10);
   filter->SetResultArrayName("u");
@@ -188,7 +181,7 @@ TEST(Updates, DataThatDependOnTheMeshAloneAreReused)
 {
   auto sphere = Sphere(4);
   AddRough(sphere);
-  auto filter = MakeFilter(sphere);
+  auto filter = MakeHeatFilter(sphere);
   filter->Update();
   double first = 2.0;
   Listen(filter, [&](double amount) { first = amount > 0.0 ? std::min(first, amount) : first; });

@@ -38,34 +38,6 @@ std::size_t NumberOfWarnings(vtkAlgorithm* filter, const std::function<void()>& 
 
 } // namespace
 
-TEST(Warnings, OfTheSurfaceAppearOnceForAllEditsAndRequestedTimes)
-{
-  const auto sphere = DefectiveSphere();
-  vtkNew<vtkFVMHeatFilter> filter;
-  filter->SetInputData(sphere);
-  filter->GenerateTimeStepsOn();
-  const auto update = [&] { filter->Update(); };
-  EXPECT_EQ(NumberOfWarnings(filter, update), 1u);
-  for (const double time : { 3.0, 7.0, 0.0 })
-  {
-    EXPECT_EQ(NumberOfWarnings(filter, [&] { UpdateAt(filter, time); }), 0u) << time;
-  }
-  for (const double step : { 0.5, 2.0, 3.0 })
-  {
-    filter->SetTimeStep(step);
-    EXPECT_EQ(NumberOfWarnings(filter, update), 0u) << step;
-  }
-  filter->IntrinsicDelaunayOn();
-  EXPECT_EQ(NumberOfWarnings(filter, update), 0u);
-  sphere->GetPointData()->GetScalars()->SetComponent(3, 0, 7.0);
-  sphere->Modified();
-  EXPECT_EQ(NumberOfWarnings(filter, update), 0u);
-  sphere->GetPoints()->SetPoint(10, 0.0, 0.0, 1.3);
-  sphere->Modified();
-  EXPECT_EQ(NumberOfWarnings(filter, update), 1u);
-  EXPECT_EQ(NumberOfWarnings(filter, update), 0u);
-}
-
 TEST(Warnings, OfDirectionFieldsAppearOnceForAllEditsAndBlocks)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
@@ -150,43 +122,6 @@ TEST(ReportedValues, AreThoseOfTheFirstBlockWhicheverWasEditedLast)
   const double after = weightOf(filter);
   EXPECT_NE(after, before);
   EXPECT_EQ(after, weightOf(makeFilter()));
-}
-
-/// Noise without a signal that was smoothed over three edges, and the same with white noise.
-TEST(Warnings, OfDataWithoutWhiteNoiseAppearOnceAndNotWithANoiseLevel)
-{
-  const auto expectWarning = [](auto filter)
-  {
-    const auto sphere = Sphere(4);
-    const double length = 3.0 * 0.075;
-    AddPointArray(
-      sphere, "f", 1, [&](vtkIdType i, int) { return SmoothedNoise(sphere->GetPoint(i), length); });
-    AddPointArray(sphere, "white", 1,
-      [&](vtkIdType i, int) { return sphere->GetPoint(i)[2] + 0.1 * Rough(i, 0); });
-    filter->SetInputData(sphere);
-    filter->AutomaticFidelityOn();
-    filter->SetModeToSteadyState();
-    SetInputArray(filter, 0, "f");
-    const auto update = [&] { filter->Update(); };
-    {
-      Messages messages(filter);
-      update();
-      ASSERT_EQ(messages.Warnings.size(), 1u);
-      EXPECT_NE(
-        messages.Warnings[0].find("NoiseLevel: the data show no white noise"), std::string::npos)
-        << messages.Warnings[0];
-      EXPECT_NE(messages.Warnings[0].find("(set NoiseLevel)"), std::string::npos);
-    }
-    filter->SetResultArrayName("other");
-    EXPECT_EQ(NumberOfWarnings(filter, update), 0u) << "said before";
-    filter->SetNoiseLevel(0.3);
-    EXPECT_EQ(NumberOfWarnings(filter, update), 0u);
-    filter->SetNoiseLevel(0.0);
-    SetInputArray(filter, 0, "white");
-    EXPECT_EQ(NumberOfWarnings(filter, update), 0u);
-  };
-  expectWarning(vtkSmartPointer<vtkFVMHeatFilter>::New());
-  expectWarning(vtkSmartPointer<vtkIntrinsicTVFilter>::New());
 }
 
 /// AutomaticFidelity finds a weight for each block, from its own noise.

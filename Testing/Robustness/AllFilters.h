@@ -76,6 +76,15 @@ FilterKind MakeKind(
     result };
 }
 
+/// The array that a run of this kind diffuses or fills in, "f", "rgb" or "c"; empty if there is none.
+inline std::string DiffusedArray(const FilterKind& kind)
+{
+  const std::string result = kind.Result;
+  const std::size_t end = result.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  const std::string name = result.substr(0, end == std::string::npos ? 0 : end);
+  return name == "f" || name == "rgb" || name == "c" ? name : "";
+}
+
 /// Whether SetInputArrayToProcess() has chosen an array of this index by its name.
 inline bool HasInputArray(vtkAlgorithm* filter, int index)
 {

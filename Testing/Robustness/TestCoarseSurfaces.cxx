@@ -34,15 +34,6 @@ using SurfaceDiffusion::Testing::SmallCoarseSurfaces;
 namespace
 {
 
-/// The array that a run of this kind diffuses or fills in, "f", "rgb" or "c"; empty if there is none.
-std::string DiffusedArray(const FilterKind& kind)
-{
-  const std::string result = kind.Result;
-  const std::size_t end = result.find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ");
-  const std::string name = result.substr(0, end == std::string::npos ? 0 : end);
-  return name == "f" || name == "rgb" || name == "c" ? name : "";
-}
-
 /// Run without an error. unturned: the surface before it was Rotated().
 vtkSmartPointer<vtkPolyDataAlgorithm> RunKind(
   const FilterKind& kind, vtkPolyData* surface, vtkPolyData* unturned = nullptr)

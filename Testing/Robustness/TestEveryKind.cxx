@@ -10,7 +10,6 @@
 #include "vtkMultiBlockDataSet.h"
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
 #include <map>
 #include <string>
@@ -22,20 +21,6 @@ namespace
 {
 
 using Change = std::function<void(vtkPolyDataAlgorithm*)>;
-
-/// The array that a run diffuses, from the name of its result: "f" of "fDiffused".
-std::string DataNameOf(const FilterKind& kind)
-{
-  const std::string result = kind.Result;
-  for (const std::string name : { "f", "rgb", "c" })
-  {
-    if (result.rfind(name, 0) == 0 && std::isupper(result[name.size()]))
-    {
-      return name;
-    }
-  }
-  return "";
-}
 
 class EveryKind : public testing::TestWithParam<FilterKind>
 {
@@ -58,7 +43,7 @@ protected:
     return filter;
   }
 
-  std::string DataName() const { return DataNameOf(this->GetParam()); }
+  std::string DataName() const { return DiffusedArray(this->GetParam()); }
   bool IsOnCells() const { return this->DataName() == "c"; }
   vtkDataSetAttributes* Attributes(vtkPolyData* surface) const
   {
@@ -142,7 +127,7 @@ std::vector<FilterKind> KindsWithData()
     [](const FilterKind& kind)
     {
       const bool isModel = vtkSurfaceModelAlgorithm::SafeDownCast(kind.Make()) != nullptr;
-      return isModel && !DataNameOf(kind).empty();
+      return isModel && !DiffusedArray(kind).empty();
     });
 }
 

@@ -300,20 +300,6 @@ TEST(Threads, EndWithTheUpdate)
 }
 #endif
 
-TEST(Threads, OfNegativeNumberAreAnError)
-{
-  const vtkSmartPointer<vtkPolyData> sphere = Sphere(2);
-  AddRough(sphere);
-  vtkNew<vtkFVMHeatFilter> filter;
-  filter->SetInputData(sphere);
-  filter->SetNumberOfThreads(-1);
-  Messages messages(filter);
-  filter->Update();
-  ASSERT_EQ(messages.Errors.size(), 1u);
-  EXPECT_NE(messages.Errors[0].find("NumberOfThreads is -1"), std::string::npos)
-    << messages.Errors[0];
-}
-
 TEST_P(AnyThreads, MayRunTwoFiltersAtOnce)
 {
   const vtkSmartPointer<vtkPolyData> surface = Sphere(this->GetParam().Levels(5));
