@@ -146,6 +146,9 @@ def list_properties():
                 prop.GetXMLLabel(), prop.GetPanelVisibility(), elements,
                 prop.GetDocumentation().GetDescription(), prop.GetCommand()])
         groups = [made.SMProxy.GetPropertyGroup(i) for i in range(made.SMProxy.GetNumberOfPropertyGroups())]
+        menu = servermanager.ProxyManager().GetPrototypeProxy("filters", name)
+        hints = menu.GetHints().FindNestedElementByName("ShowInMenu")
+        put("menu/%s" % name, [menu.GetXMLLabel(), hints.GetAttribute("category")])
         put("groups/%s" % name, [
             [group.GetXMLLabel()] + [group.GetProperty(k).GetXMLName()
                                      for k in range(group.GetNumberOfProperties())] for group in groups])
