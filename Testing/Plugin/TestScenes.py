@@ -50,7 +50,7 @@ def make(folder):
     path = os.path.join(folder, "sphere.vtp")
     write_sphere(path, roughness=0.02)
     sphere = XMLPolyDataReader(FileName=[path])
-    line = Line(registrationName="line", Point1=[0.1, 0.2, -0.8], Point2=[0.3, 0.1, 0.9], Resolution=9)
+    line = Line(registrationName="line", Point1=[0.9, 0.3, -0.3], Point2=[0.9, 0.3, 0.3], Resolution=9)
     points = Calculator(line, registrationName="points", Function="coordsX + 2*coordsZ", ResultArrayName="height")
     points.UpdatePipeline()
     view = GetActiveViewOrCreate("RenderView")
