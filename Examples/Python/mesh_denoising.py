@@ -198,6 +198,8 @@ def check(example, truth, noisy, filtered, denoised):
     least = example.factor * truth.angles(filtered).mean()
     angle = truth.angles(denoised).mean()
     assert angle < least, f"{example.mesh}: {angle:.2f} degrees; wanted: below {least:.2f}"
+    largest, distance = (np.linalg.norm(points - truth.points) for points in (filtered, denoised))
+    assert distance < largest, f"{example.mesh}: distance {distance:.2e}; wanted: below {largest:.2e}"
     if example.correlation == 0:  # otherwise an open surface
         change = truth.volume(denoised) / truth.volume(truth.points) - 1
         assert abs(change) < LARGEST_VOLUME_CHANGE, f"{example.mesh}: the volume changes by {change:.2%}"
@@ -223,10 +225,14 @@ def denoise(example, surface):
         truth.describe(name, points)
     length = mean_edge_length(surface)
     kind = ("mixed", "CAD", "organic")[model.GetEffectiveSurfaceType()]
-    print(f"  found: {kind}, noise of {model.GetEffectiveNoiseLevel() / length:.3f} h"
+    level = model.GetEffectiveNoiseLevel() / length
+    print(f"  found: {kind}, noise of {level:.3f} h"
           + (f", correlated over {model.GetCorrelationLength() / length:.1f} h"
              if model.GetCorrelationLength() > 0 else ""))
     check(example, truth, given, filtered, denoised)
+    if example.correlation == 0:
+        assert kind == ("organic" if example.title == "scan" else "CAD"), f"{example.mesh}: {kind}"
+        assert example.share < 1 or abs(level - example.noise) < 0.04, f"{example.mesh}: {level:.3f} h"
     return truth, columns
 
 

@@ -169,13 +169,6 @@ class Smooth(CommandTest):
             self.succeed("smooth large.surf.gii lh.func.gii 12 b.func.gii")
             np.testing.assert_allclose(self.column("a.func.gii"), self.column("b.func.gii"), 1e-5)
 
-    def test_the_integral_with_given_areas_is_kept(self):
-        random = np.random.default_rng(8).uniform(3, 12, N)
-        samples.write_gifti("areas.func.gii", {"areas": random})
-        line = "smooth lh.surf.gii lh.func.gii 8 out.func.gii --areas areas.func.gii"
-        for row in self.report(line)["columns"]:
-            self.assertAlmostEqual(row["total_after"] / row["total_before"], 1, delta=1e-6)
-
 
 class OtherCommands(CommandTest):
     def test_denoise_takes_channels_of_a_colour_together(self):

@@ -17,6 +17,7 @@ from pathlib import Path
 import nibabel as nib
 import numpy as np
 import samples
+import TestFormats
 from nibabel.gifti.util import gifti_encoding_codes
 from samples import HAS_VTK, N, NOISE, SMOOTH, run
 
@@ -57,6 +58,10 @@ def write_good_files(folder):
     path("binary.ply").write_bytes(samples.ply_bytes())
     path("text.ply").write_bytes(samples.ply_bytes(binary=False))
     path("a.stl").write_bytes(samples.stl_bytes())
+    path("text.stl").write_text(TestFormats.stl_text(faces=samples.FACES[:9]))
+    for name, order in (("face colours", ""), ("texture coordinates of corners", ">")):
+        ply = TestFormats.PLY()
+        path(f"{name.split()[0]}.ply").write_bytes(ply.build(dict(ply.cases())[name], order))
     export(path("a.3mf"), samples.POINTS, samples.FACES, np.arange(3 * N, dtype=np.uint8).reshape(N, 3))
     path("gz.func.gii.gz").write_bytes(gzip.compress(path("a.func.gii").read_bytes()))
     if HAS_VTK:

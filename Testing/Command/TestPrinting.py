@@ -236,13 +236,6 @@ class Printing(unittest.TestCase):
                 self.assertRegex(error, f"^surfacediffusion.*: {pattern}\n$")
         self.assertFalse(Path("out.stl").exists())
 
-    def test_open_parts_get_relief_and_a_warning(self):
-        points, triangles = box()
-        export("open.stl", points, triangles[:10])
-        self.succeed("texture open.stl 8mm out.stl --relief 0.5mm --steps 40",
-                     "warning: the surface has [0-9]+ open edges, where there is no relief")
-        self.assertGreater(read_surface("out.stl").points.max(), SIDE + 0.3)
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -161,40 +161,6 @@ class CoarseSurfaces(unittest.TestCase):
                         for array in data.values():
                             self.assert_known(np.asarray(array, float), warned)
 
-    def test_hubs_of_20000_triangles(self):
-        count = 20000
-        angles, one = 2 * np.pi * np.arange(count) / count, np.arange(count)
-        rim = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
-        fan = (np.vstack([[[0, 0, 0]], rim]), np.column_stack([0 * one, 1 + one, 1 + (one + 1) % count]))
-        book = (np.vstack([[[0, 0, -0.5], [0, 0, 0.5]], rim]),
-                np.column_stack([0 * one, 0 * one + 1, 2 + one]))
-        for hub, (points, triangles) in ((0, fan), (2, book)):
-            surface = sd.Surface(points, triangles)
-            sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
-            areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 6.0
-            masses = np.bincount(triangles.ravel(), np.repeat(areas, 3))
-            values = self.random.normal(size=len(points))
-            found = sd.heat(surface, values, fwhm=0.2)
-            self.assertLess(abs(masses @ (found - values)), 1e-12 * (masses @ np.abs(values)))
-            distances = sd.distance(surface, 5)
-            if hub == 0:
-                self.assertAlmostEqual(distances[hub], 1.0, delta=1e-12)
-            else:  # over the edge
-                np.testing.assert_allclose(np.delete(distances, [0, 1, 5]), 2.0, atol=1e-12)
-            self.assertLess(np.abs(sd.curvature(surface).mean).max(), 1e-11)
-
-    def test_2000_parts_are_alone(self):
-        ball, count = sd.sphere(0), 2000
-        shifts = 3.0 * np.arange(count)[:, None] * [1.0, 0.0, 0.0]
-        points = (ball.points + shifts[:, None]).reshape(-1, 3)
-        triangles = (ball.triangles + ball.n_points * np.arange(count)[:, None, None]).reshape(-1, 3)
-        values = self.random.normal(size=ball.n_points)
-        surface, all_values = sd.Surface(points, triangles), np.tile(values, count)
-        for name, extra in (("heat", {"fwhm": 0.5}), ("laplacian", {}), ("interpolate", {})):
-            found = np.asarray(getattr(sd, name)(surface, all_values, **extra)).reshape(count, -1)
-            alone = np.asarray(getattr(sd, name)(ball, values, **extra))
-            np.testing.assert_allclose(found, np.tile(alone, (count, 1)), atol=1e-6)
-
     def test_heat_takes_the_step_of_dense_matrices(self):
         for _, points, triangles, values in self.each():
             masses, stiffness = dense_matrices(points, triangles)
@@ -203,52 +169,11 @@ class CoarseSurfaces(unittest.TestCase):
             want = np.linalg.solve(np.diag(masses) + 0.7 * stiffness, masses * values)
             np.testing.assert_allclose(found, want, atol=1e-9 * np.abs(values).max())
 
-    def test_eigenmodes_are_those_of_dense_matrices(self):
+    def test_distances_are_symmetric(self):
         for _, points, triangles, _ in self.each():
-            masses, stiffness = dense_matrices(points, triangles)
-            scale = 1.0 / np.sqrt(masses)
-            want = np.linalg.eigvalsh(stiffness * scale[:, None] * scale)
-            count = min(len(points) - 1, 6)
-            found, _ = sd.eigenmodes((points, triangles), count)
-            np.testing.assert_allclose(found, want[:count], atol=1e-8 * want[-1])
-
-    def test_distances_are_symmetric_and_those_of_edges_in_tetrahedra(self):
-        for name, points, triangles, _ in self.each():
-            surface = sd.Surface(points, triangles)
-            found = np.array([sd.distance(surface, i) for i in range(min(len(points), 12))])
-            square = found[:, : len(found)]
-            finite = np.isfinite(square)
-            self.assertTrue((finite == finite.T).all())
-            np.testing.assert_allclose(square[finite], square.T[finite], rtol=0,
-                                       atol=1e-10 * square[finite].max())
-            straight = np.linalg.norm(points[: len(found), None] - points, axis=2)
-            self.assertTrue((found >= straight * (1.0 - 1e-12)).all())
-            if name.startswith("Tetrahedron"):
-                np.testing.assert_allclose(found, straight, atol=1e-12 * straight.max())
-            if name.startswith("HullOf") and name.endswith("Sphere"):
-                self.assertLess(found.max(), np.pi)  # an inscribed polyhedron is inside the sphere
-
-    def test_curvature_is_invariant_and_positive_on_convex_solids(self):
-        for name, points, triangles, _ in self.each():
-            found = sd.curvature((points, triangles)).mean
-            turned = sd.curvature((1e-3 * turn(points), triangles)).mean
-            np.testing.assert_allclose(1e-3 * turned, found, atol=1e-8 * np.abs(found).max())
-            if name.startswith(("HullOf", "Octahedron", "Cube")):
-                self.assertGreater(found.min(), 0.0)
-
-    def test_nothing_moves_without_noise_or_steps(self):
-        for name, points, triangles, _ in self.each():
-            np.testing.assert_array_equal(
-                np.asarray(sd.denoise_mesh((points, triangles)).points), points)
-            moved = sd.harmonic_map((points, triangles), move_vertices=True, number_of_time_steps=0)
-            np.testing.assert_array_equal(np.asarray(moved.points), points)
-
-    def test_interpolation_does_not_depend_on_rotation_and_unit(self):
-        for _, points, triangles, values in self.each():
-            known = np.where(np.arange(len(points)) % 3 == 1, np.nan, values)
-            found = sd.interpolate((points, triangles), known)
-            turned = sd.interpolate((1e3 * turn(points), triangles), known)
-            np.testing.assert_allclose(turned, found, atol=1e-6 * np.abs(values).max())
+            surface, count = sd.Surface(points, triangles), min(len(points), 12)
+            found = np.array([sd.distance(surface, i)[:count] for i in range(count)])
+            np.testing.assert_allclose(found, found.T, rtol=0, atol=1e-10 * found[np.isfinite(found)].max())
 
 
 if __name__ == "__main__":

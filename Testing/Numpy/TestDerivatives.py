@@ -81,19 +81,6 @@ class Derivatives(unittest.TestCase):
         np.testing.assert_allclose(sd.divergence(surface, vectors), 0.0, atol=1e-12)
         np.testing.assert_allclose(sd.curl(surface, vectors), 0.0, atol=1e-12)
 
-    def test_of_bytes_are_those_of_all_components(self):
-        surface = plate()
-        for columns in (2, 3, 4):
-            data = np.outer(surface.points[:, 0], np.arange(1, columns + 1)).astype(np.uint8)
-            found = sd.gradient(surface, data).reshape(-1, columns, 3)
-            np.testing.assert_allclose(found[:, :, 0], np.tile(np.arange(1, columns + 1), (169, 1)), atol=1e-12)
-
-    def test_of_nothing_known_is_a_warning(self):
-        surface = plate()
-        with self.assertWarnsRegex(sd.SurfaceDiffusionWarning, "^values is NaN in every triangle that takes part"):
-            found = sd.gradient(surface, np.full(surface.n_points, np.nan))
-        self.assertTrue(np.isnan(found).all())
-
     def test_velocity_is_0_where_times_do_not_change(self):
         surface = plate()
         found = sd.conduction_velocity(surface, np.full(surface.n_points, 3.0))

@@ -1,8 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Values that go from sphere to sphere. The weights of scipy.sparse are tested where scipy is."""
+"""Values that go from sphere to sphere. TestOperators.py tests the weights as a matrix of scipy.sparse."""
 
-import importlib.util
 import pickle
 import unittest
 import warnings
@@ -10,8 +9,6 @@ import warnings
 import numpy as np
 
 from surfacediffusion import Resampler, Surface, SurfaceDiffusionWarning, on_faces, resample, sphere
-
-HAS_SCIPY = importlib.util.find_spec("scipy") is not None
 
 
 def turn(points, angle=0.7):
@@ -56,14 +53,6 @@ class Means(unittest.TestCase):
             self.assertGreater(resample(FINE, COARSE, one).max(), 0.0)
         missed = sum(resample(FINE, COARSE, np.eye(FINE.n_points)[:, ::20], "Barycentric").max(axis=0) == 0.0)
         self.assertGreater(missed, 100)
-
-    def test_constants_keep_their_bits_and_types(self):
-        for dtype in (np.float32, np.float64):
-            for method in ("barycentric", "adaptive_barycentric_area"):
-                constant = np.full((FINE.n_points, 3), 0.1, dtype)
-                found = resample(FINE, COARSE, constant, method)
-                self.assertEqual(found.dtype, dtype)
-                self.assertTrue((found == dtype(0.1)).all())
 
     def test_a_sphere_of_another_radius_and_order_gives_the_same_values(self):
         values = RNG.normal(size=(FINE.n_points, 2))
@@ -135,11 +124,6 @@ class Labels(unittest.TestCase):
         self.assertEqual(means.dtype, np.float64)
         self.assertGreater(np.count_nonzero(means % 1), 100)
 
-    def test_the_label_is_that_of_the_largest_sum(self):
-        labels = RNG.integers(0, 4, FINE.n_points)
-        shares = resample(FINE, COARSE, (labels[:, None] == np.arange(4)).astype(float))
-        np.testing.assert_array_equal(resample(FINE, COARSE, labels), shares.argmax(axis=1))
-
     def test_nothing_known_is_0_of_integers_and_nan_of_others(self):
         labels = np.full(FINE.n_points, 5)
         mask = FINE.points[:, 2] > 0
@@ -210,27 +194,6 @@ class Errors(unittest.TestCase):
 
         with self.assertRaises(KeyboardInterrupt):
             Resampler(sphere(6), sphere(7), progress=stop)
-
-
-@unittest.skipIf(HAS_SCIPY, "scipy is installed")
-class WithoutScipy(unittest.TestCase):
-    def test_the_matrix_needs_it(self):
-        with self.assertRaisesRegex(ImportError, r"^Resampler.weights\(\) returns a matrix of scipy.sparse"):
-            Resampler(FINE, COARSE).weights
-
-
-@unittest.skipUnless(HAS_SCIPY, "scipy is not installed")
-class Weights(unittest.TestCase):
-    def test_rows_sum_to_1_and_are_applied(self):
-        resampler = Resampler(FINE, COARSE)
-        weights = resampler.weights
-        self.assertEqual(weights.shape, (COARSE.n_points, FINE.n_points))
-        np.testing.assert_allclose(weights.sum(axis=1), 1.0, atol=1e-14)
-        self.assertTrue((np.diff(weights.tocsc().indptr) > 0).all())  # each point of the source counts
-        values = smooth(FINE)
-        np.testing.assert_allclose(weights @ values, resampler(values), atol=1e-14)
-        weights.data[:] = 0.0
-        self.assertGreater(resampler.weights.data.min(), 0.0)
 
 
 if __name__ == "__main__":

@@ -78,15 +78,6 @@ class Weights(unittest.TestCase):
                           for data in given)
             np.testing.assert_array_equal(np.delete(one, far), np.delete(other, far))
 
-    def test_what_is_between_them_and_others_has_no_weight_either(self):
-        for function, options in ((sd.intrinsic_tv, dict(mode="SteadyState")), (sd.segment, {}),
-                                  (sd.heat, dict(mode="SteadyState", fidelity_weight=1.0))):
-            one, nan = (np.asarray(getattr(found, "values", found)) for found in (
-                function(self.surface, np.where(self.weights > 0, self.values, other), fidelity=self.weights,
-                         refine_to=0.1, **options) for other in (1e3, np.nan)))
-            rows = slice(self.surface.n_points)
-            np.testing.assert_allclose(one[rows], nan[rows], atol=1e-9)
-
     def test_they_are_the_start_of_time_steps(self):
         options = dict(fidelity=self.weights, fidelity_weight=1.0, time_step=1.0)
         one, other = (sd.heat(self.surface, np.where(self.weights > 0, self.values, start), **options)

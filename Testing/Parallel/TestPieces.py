@@ -17,9 +17,8 @@ from paraview.simple import (
     SurfaceDistanceFilter, SurfaceInterpolationFilter, SurfaceRandomFieldFilter,
     SurfaceReliefFilter, SurfaceSegmentationFilter, TensorDiffusionFilter, TrivialProducer, TuringTextureFilter,
 )
-from vtkmodules.util.misc import calldata_type
+from partitions import give_ids
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.util.vtkConstants import VTK_STRING
 from vtkmodules.vtkCommonDataModel import vtkPartitionedDataSet
 from vtkmodules.vtkCommonCore import vtkDoubleArray
 from vtkmodules.vtkParallelCore import vtkCommunicator, vtkMultiProcessController
@@ -166,7 +165,7 @@ class TestPieces(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.plain = pieces.make_surface()
-        cls.numbered = pieces.give_ids(cls.plain)
+        cls.numbered = give_ids(cls.plain)
         cls.with_ids = {name: cls.alone(cls.numbered, *case) for name, *case in CASES}
         # Random numbers come from the global ids, or from the coordinates if there are none.
         cls.without_ids = {**cls.with_ids, **{
@@ -271,40 +270,6 @@ class TestPieces(unittest.TestCase):
         # x is an eigenfunction. Boundaries at the interfaces would change its shape.
         self.assertLess(spread, 0.02)
 
-    def test_seeking_in_time_does_not_restart_the_run(self):
-        mine = pieces.split(self.numbered, COUNT, "slabs")[RANK]
-        heat = run(FVMHeatFilter, dict(GenerateTimeSteps=1), producer(mine))
-        alone = run(FVMHeatFilter, dict(GenerateTimeSteps=1), producer(self.numbered))
-        alone.GetClientSideObject().SetController(None)
-        steps = []
-        for time in (7.0, 3.0, 10.0):
-            for filter in (heat, alone):
-                filter.UpdatePipeline(time)
-            expected = values(alone.GetClientSideObject().GetOutput(), "fDiffused")
-            output = heat.GetClientSideObject().GetOutput()
-            worst = max(abs(row[0] - expected[key][0]) for key, row in values(output, "fDiffused").items())
-            self.assertLess(largest_of_all(worst), 1e-9)
-            self.assertEqual(output.GetInformation().Get(output.DATA_TIME_STEP()), time)
-            steps.append(heat.GetClientSideObject().GetNumberOfStepsComputed())
-        self.assertEqual(steps, [7, 7, 10])
-        for name in ("TimeUnit", "MeanEdgeLength", "ValueRange", "NumberOfIterations",
-                     "NumberOfUnusedPoints"):
-            get = lambda filter: getattr(filter.GetClientSideObject(), "Get" + name)()
-            self.assertAlmostEqual(get(heat), get(alone), delta=1e-12, msg=name)
-
-    def test_errors_are_reported_by_one_process_and_leave_the_input(self):
-        mine = pieces.split(self.numbered, COUNT, "slabs")[RANK]
-        heat = run(FVMHeatFilter, dict(TimeStep=-1.0), producer(mine))
-        errors = []
-
-        @calldata_type(VTK_STRING)
-        def remember(_object, _event, text):
-            errors.append(text)
-
-        heat.GetClientSideObject().AddObserver("ErrorEvent", remember)
-        heat.UpdatePipeline()  # which may ask for a failed update again, with the same error
-        self.assertEqual(len(set(errors)), 1 if RANK == 0 else 0)
-        self.assertIsNone(heat.GetClientSideObject().GetOutput().GetPointData().GetArray("fDiffused"))
 
 
 if __name__ == "__main__":

@@ -5,10 +5,11 @@
 import math
 
 import numpy as np
-from vtkmodules.numpy_interface import dataset_adapter as dsa
-from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+from partitions import number_cells, part_of
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
 
 def polydata(points, triangles):
     data = vtkPolyData()
@@ -65,52 +66,14 @@ def make_surface(around=44, along=20):
     return data
 
 
-def give_ids(data):
-    """The same surface with global ids."""
-    copy = data.NewInstance()
-    copy.ShallowCopy(data)
-    ids = numpy_to_vtkIdTypeArray(np.arange(data.GetNumberOfPoints()), deep=True)
-    ids.SetName("GlobalPointIds")
-    copy.GetPointData().SetGlobalIds(ids)
-    return copy
-
-
-def select(data, cells):
-    """The piece of these cells, with its own points and arrays."""
-    adapted = dsa.WrapDataObject(data)
-    triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)[cells]
-    used, numbers = np.unique(triangles, return_inverse=True)
-    piece = polydata(adapted.Points[used].reshape(-1, 3), numbers.reshape(-1, 3))
-    for source, target, rows in (
-            (data.GetPointData(), piece.GetPointData(), used),
-            (data.GetCellData(), piece.GetCellData(), cells)):
-        for k in range(source.GetNumberOfArrays()):
-            array = source.GetArray(k)
-            copy = array.NewInstance()
-            copy.SetName(array.GetName())
-            copy.SetNumberOfComponents(array.GetNumberOfComponents())
-            copy.SetNumberOfTuples(len(rows))
-            for row, of_whole in enumerate(rows):
-                copy.SetTuple(row, int(of_whole), array)
-            target.AddArray(copy)
-        if source.GetScalars():
-            target.SetActiveScalars(source.GetScalars().GetName())
-        if source.GetGlobalIds():
-            target.SetGlobalIds(target.GetArray(source.GetGlobalIds().GetName()))
-    return piece
-
-
 def split(data, count, how):
     """Decompositions of a surface: slabs, random cells, an empty piece, all cells in one piece."""
-    triangles = vtk_to_numpy(data.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     number = data.GetNumberOfCells()
     if how == "random":
         owner = np.random.RandomState(2).randint(0, count, number)
     elif how == "last":
         owner = np.full(number, count - 1)
     else:
-        x = dsa.WrapDataObject(data).Points[triangles].mean(axis=1)[:, 0]
         full = count - 1 if how == "empty" and count > 1 else count
-        order = np.argsort(np.argsort(x, kind="stable"), kind="stable")
-        owner = order * full // number
-    return [select(data, np.flatnonzero(owner == p)) for p in range(count)]
+        owner = number_cells(data) * full // number
+    return [part_of(data, owner == p) for p in range(count)]

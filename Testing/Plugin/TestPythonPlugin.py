@@ -60,7 +60,7 @@ class TestPythonPlugin(unittest.TestCase):
             a, b, equal_nan=a.dtype.kind == "f")
 
     def test_properties_panels_and_functions_are_the_same(self):
-        self.compare("properties/", "groups/", "simple/")
+        self.compare("properties/", "menu/", "groups/", "simple/")
 
     def test_random_clicks_give_the_same_bits_and_messages(self):
         self.compare("clicks/")

@@ -10,10 +10,10 @@ import tempfile
 import unittest
 
 import numpy as np
-from paraview import simple, smstate
+from paraview import make_name_valid, servermanager, simple, smstate
 from paraview.simple import (
-    ColorBy, FindSource, GetActiveViewOrCreate, GetAnimationScene, GetColorTransferFunction,
-    LoadState, Render, ResetCamera, SaveScreenshot, SaveState, Show, XMLPolyDataReader,
+    Calculator, ColorBy, FindSource, GetActiveViewOrCreate, GetAnimationScene, GetColorTransferFunction,
+    Line, LoadState, Render, ResetCamera, SaveScreenshot, SaveState, Show, XMLPolyDataReader,
 )
 from plugin_testing import differences, filter_names, results, write_sphere
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -28,7 +28,7 @@ SETTINGS = {
     "SurfaceCurvatureFilter": dict(FWHM=0.3),
     "SurfaceDerivativesFilter": dict(Quantity="Laplacian"),
     "SurfaceDirectionFieldFilter": dict(Method="Smooth"),
-    "SurfaceDistanceFilter": dict(SourceArray=["POINTS", "poles"], Method="Eikonal"),
+    "SurfaceDistanceFilter": dict(Method="Eikonal"),
     "SurfaceInterpolationFilter": dict(ComputeError=1),
     "SurfaceRandomFieldFilter": dict(Covariance="MaternNu1", NumberOfFields=2),
     "SurfaceSegmentationFilter": dict(NumberOfRegions=3),
@@ -38,6 +38,8 @@ SETTINGS = {
         DiffusionRateAcross2=2.6),
 }
 INPUTS = {"TuringTextureFilter": "SurfaceDirectionFieldFilter"}  # of the others: the sphere
+FURTHER_INPUTS = {"SurfaceDistanceFilter": ["Sources", "PathPoints"],
+                  "SurfaceInterpolationFilter": ["PointsWithValues"]}
 NAMES = filter_names()
 SIZE = [100 * len(NAMES), 100]
 TIMES = (0, 4)
@@ -48,14 +50,19 @@ def make(folder):
     path = os.path.join(folder, "sphere.vtp")
     write_sphere(path, roughness=0.02)
     sphere = XMLPolyDataReader(FileName=[path])
+    line = Line(registrationName="line", Point1=[0.9, 0.3, -0.3], Point2=[0.9, 0.3, 0.3], Resolution=9)
+    points = Calculator(line, registrationName="points", Function="coordsX + 2*coordsZ", ResultArrayName="height")
+    points.UpdatePipeline()
     view = GetActiveViewOrCreate("RenderView")
     view.ViewSize = SIZE
     view.OrientationAxesVisibility = 0
     view.CameraParallelProjection = 1
     for i, name in enumerate(NAMES):
-        source = getattr(simple, name)(
+        # By its label, as from the window's menu; TestProxies makes them by their classes' names, too.
+        label = make_name_valid(servermanager.ProxyManager().GetPrototypeProxy("filters", name).GetXMLLabel())
+        source = getattr(simple, label)(
             FindSource(INPUTS[name]) if name in INPUTS else sphere, registrationName=name,
-            **SETTINGS.get(name, {}))
+            **SETTINGS.get(name, {}), **dict.fromkeys(FURTHER_INPUTS.get(name, ()), points))
         place, array = next(
             key[1:] for key in results(source) if key[0] == 0 and key[2] != "coordinates")
         display = Show(source, view)

@@ -138,9 +138,8 @@ def check_first_apply():
     Hide(data, view)
     assert has_number(source), name
     check_picture("Client" + name)
-    if "SURFACEDIFFUSION_PYTHON_PLUGIN" not in os.environ:  # its pictures and numbers are the same
-        source.UpdatePropertyInformation()
-        check_slip(view, "Client" + name, SLIPS[name](source), number=True)
+    source.UpdatePropertyInformation()
+    check_slip(view, "Client" + name, SLIPS[name](source), number=True)
     hide(source)
     SetActiveView(view)
     Show(data, view)
@@ -149,16 +148,16 @@ def check_first_apply():
 
 
 def applied_filters():
-    """The filters of the scene by name; it must have all that the plugin has."""
+    """The filters of the scene by name."""
     found = {name_of(source): source for source in GetSources().values()}
-    missing = set(filter_names()) - set(found)
-    assert not missing, "not applied: %s" % missing
-    return {name: found[name] for name in filter_names()}
+    return {name: found[name] for name in filter_names() if name in found}
 
 
 def check_every_filter():
     """Checks that every filter of the plugin has been applied."""
-    say("as expected: %d filters" % len(applied_filters()))
+    missing = set(filter_names()) - set(applied_filters())
+    assert not missing, "not applied: %s" % missing
+    say("as expected: %d filters" % len(filter_names()))
 
 
 def check_time(time, end):
@@ -189,6 +188,7 @@ def check_recording():
     trace = smtrace.stop_trace()
     assert "NumberOfTimeSteps = " not in trace, trace  # a default
     expected = {}
+    assert len(applied_filters()) == 2
     for name, source in applied_filters().items():
         label = make_name_valid(source.SMProxy.GetXMLLabel())
         assert label + "(" in trace, trace

@@ -10,8 +10,6 @@ import unittest
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkTable
-from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 
@@ -86,33 +84,6 @@ class TestModule(unittest.TestCase):
         self.assertIn("u_t = div(", text(vtkIntrinsicTVFilter))
         self.assertIn("(R/h)^2", text(vtkIntrinsicTVFilter.SetBeta))
         self.assertIn("Default: 1e-6", text(vtkIntrinsicTVFilter.SetBeta))
-
-    def test_the_history_is_a_table(self):
-        filter = vtkFVMHeatFilter()
-        filter.SetInputData(sphere(noise))
-        filter.SetTimeStep(2.0)
-        filter.Update()
-        history = filter.GetOutputDataObject(1)
-        self.assertIsInstance(history, vtkTable)
-        self.assertEqual(history.GetNumberOfRows(), 11)
-        self.assertTrue((np.diff(vtk_to_numpy(history.GetColumnByName("Energy"))) < 0).all())
-
-    def test_times_can_be_asked_for_in_any_order(self):
-        filter = vtkFVMHeatFilter()
-        filter.SetInputData(sphere(noise))
-        filter.SetNumberOfTimeSteps(40)
-        filter.GenerateTimeStepsOn()
-        filter.UpdateInformation()
-        times = filter.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
-        self.assertEqual(len(times), 41)
-        states = []
-        for time in (40.0, 10.0, 40.0):
-            filter.UpdateTimeStep(time)
-            self.assertEqual(
-                filter.GetOutput().GetInformation().Get(vtkDataObject.DATA_TIME_STEP()), time)
-            states.append(result(filter).copy())
-        np.testing.assert_array_equal(states[0], states[2])
-        self.assertGreater(np.abs(states[0] - states[1]).max(), 0)
 
     def test_observers_hear_errors_that_name_the_property(self):
         filter = vtkFVMHeatFilter()

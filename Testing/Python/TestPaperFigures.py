@@ -1,10 +1,8 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rows of Examples/Python/paper_figures.py as pictures: generated surfaces, and scans if they are
-available, with patches instead of photographs. The pictures show the first channel in bands, which
-reveal errors that smooth colours hide."""
+"""Rows of Examples/Python/paper_figures.py as pictures: generated surfaces with patches instead of
+photographs. The pictures show the first channel in bands, which reveal errors that smooth colours hide."""
 
-import os
 import sys
 import unittest
 from pathlib import Path
@@ -20,16 +18,9 @@ import paper_figures as figures  # noqa: E402
 import surface_data as data  # noqa: E402
 from pictures import Panel, colour_table, display_missing, save_picture  # noqa: E402
 
-MESHES = os.environ.get("SURFACEDIFFUSION_MESH_DIR")
 QUICK = SimpleNamespace(quick=True)
 BANDS = colour_table(0, 1, [(0.2, 0.1, 0.5), (0.9, 0.8, 0.2), (0.1, 0.6, 0.3)], steps=12)
 TOLERANCE = 10.0  # fully different pixels, see Testing/Filters/ImageTest.h
-
-
-def on_scan(example):
-    """The same as figures.painted, with patches on the mesh of the example."""
-    surface = data.refined(data.read_mesh(Path(MESHES) / f"{example.mesh}.off"), 10_000)
-    return data.with_arrays(surface, clean=data.patches(surface))
 
 
 def denoised(surface, slip):
@@ -93,15 +84,6 @@ class TestPaperFigures(unittest.TestCase):
         example = figures.FIGURES[6][2]
         self.check("Figure6", figures.painted(example, QUICK), example, figures.FRONT, inpainted)
 
-    @unittest.skipUnless(MESHES, "no meshes")
-    def test_noise_is_removed_on_a_scan(self):
-        example = figures.FIGURES[4][1]
-        self.check("Figure4Scan", on_scan(example), example, example.side, denoised)
-
-    @unittest.skipUnless(MESHES, "no meshes")
-    def test_spots_are_filled_in_on_a_scan(self):
-        example = figures.FIGURES[6][1]
-        self.check("Figure6Scan", on_scan(example), example, example.side, inpainted)
 
 
 if __name__ == "__main__":

@@ -80,6 +80,7 @@ class TestPipeline(unittest.TestCase):
         source, heat = elevation(), vtkFVMHeatFilter()
         heat.SetInputConnection(source.GetOutputPort())
         heat.Update()
+        self.assertTrue(heat.GetOutputDataObject(1).IsA("vtkTable"))
         history = WrapDataObject(heat.GetOutputDataObject(1)).RowData
         np.testing.assert_array_equal(history["Step"], np.arange(11))
         self.assertTrue((np.diff(history["Energy"]) < 0).all())

@@ -138,39 +138,17 @@ class TestPage(unittest.TestCase):
                 np.testing.assert_allclose(array, numbers, rtol=0, atol=within * np.abs(numbers).max())
         return found
 
-    def test_each_model_gives_the_numbers_of_numpy(self):
+    def test_scripts_get_the_numbers_of_numpy(self):
+        """Of three models; TestEngine.py has all of them."""
         surface, values = self.surface, self.values
-        data = {"array": "thickness"}
-        self.compare("heat", {**data, "fwhm": 3.0}, {
+        self.compare("heat", {"array": "thickness", "fwhm": 3.0}, {
             "thicknessDiffused": sd.heat(surface, values, fwhm=3.0)})
-        self.compare("intrinsic_tv", {**data, "number_of_time_steps": 3}, {
-            "thicknessTV": sd.intrinsic_tv(surface, values, number_of_time_steps=3)}, 1e-6)
-        self.compare("tensor_diffusion", {**data, "number_of_time_steps": 3}, {
-            "thicknessBeltrami": sd.tensor_diffusion(surface, values, number_of_time_steps=3)}, 1e-6)
-        edges = sd.mumford_shah(surface, values, edge_width=1.0)
-        self.compare("mumford_shah", {**data, "edge_width": 1.0}, {"thicknessMumfordShah": edges.values, "Edges": edges.edges}, 1e-3)
-        self.compare("segment", data, {"RegionId": sd.segment(surface, values).values})
         sparse = [5, 100, 300, 600]
         self.compare("interpolate", {"values": {"points": sparse, "values": [1.0, 2.0, 0.0, 4.0]}, "exact": True}, {
             "Interpolated": sd.interpolate(surface, [1.0, 2.0, 0.0, 4.0], surface.points[sparse],
                                            exact=True).values}, 1e-8)
-        self.compare("harmonic_map", {"move_vertices": True}, {
-            "points": sd.harmonic_map(surface, move_vertices=True).points}, 1e-6)
         self.compare("denoise_mesh", {"noise_level": 0.1}, {
             "points": sd.denoise_mesh(surface, noise_level=0.1).points}, 1e-6)
-        self.compare("turing_texture", {"number_of_time_steps": 10, "seed": 3}, {
-            "Texture": sd.turing_texture(surface, number_of_time_steps=10, seed=3, refine_to=0.0).texture}, 1e-6)
-        bent = sd.curvature(surface, fwhm=3.0)
-        self.compare("curvature", {"fwhm": 3.0}, {"MeanCurvature": bent.mean, "GaussianCurvature": bent.gaussian})
-        self.compare("derivatives", data, {"thicknessGradient": sd.derivatives(surface, values)})
-        self.compare("distance", {"sources": [0, 200]}, {"Distance": sd.distance(surface, [0, 200])})
-        self.compare("random_field", {"fwhm": 4.0, "seed": 2}, {
-            "RandomField": sd.random_field(surface, fwhm=4.0, seed=2)}, 1e-7)
-        self.compare("relief", {**data, "height": 0.2}, {
-            "points": sd.relief(surface, values, 0.2).surface.points}, 1e-8)
-        lines = sd.direction_field(surface, method="Smooth")
-        found = np.reshape(self.call("run", "direction_field", {"method": "Smooth"})["arrays"]["Direction"], lines.shape)
-        np.testing.assert_allclose(np.abs((found * lines).sum(axis=1)), 1, atol=1e-6)  # lines have no sign
 
     def test_apply_at_first_sight_works_for_every_model_and_says_the_width(self):
         for model in [option.get_attribute("value") for option in Select(self.one("model")).options]:
@@ -236,10 +214,7 @@ class TestPage(unittest.TestCase):
         self.apply()  # the engine has the surface again
 
     def test_wrong_files_and_settings_are_one_line_and_the_page_lives_on(self):
-        whole = (self.folder / "pebble.ply").read_bytes()
-        files = {"text.stl": b"no mesh at all\n", "empty.ply": b"", "cut.ply": whole[:len(whole) // 2],
-                 "huge.off": b"OFF\n1000000000000 1000000000000 0\n0 0 0\n", "outside.off":
-                 b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "alien.xyz": bytes(range(256)) * 4}
+        files = {"empty.ply": b"", "huge.off": b"OFF\n1000000000000 1000000000000 0\n0 0 0\n"}
         for name, content in files.items():
             with self.subTest(name):
                 (self.folder / name).write_bytes(content)

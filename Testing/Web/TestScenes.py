@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scenes for the browser: every fourth of those that programs have written, or with SURFACEDIFFUSION_LONG
+"""Scenes for the browser: every eighth of those that programs have written, or with SURFACEDIFFUSION_LONG
 in the environment every one, is opened from its file and turned with the mouse. Arguments: the folder
 of the programs, and the folder of the scenes."""
 import contextlib
@@ -108,7 +108,7 @@ class TestScenes(unittest.TestCase):
         self.assertEqual(self.browser.title, "Two balls")
 
     def test_scenes_of_examples_turn(self):
-        every = 1 if "SURFACEDIFFUSION_LONG" in os.environ else 4
+        every = 1 if "SURFACEDIFFUSION_LONG" in os.environ else 8
         scenes = sorted(OUTPUT.rglob("*.html"))[::every]
         if not scenes:
             self.skipTest(f"no scenes in {OUTPUT}: the tests Example.Python write them")
