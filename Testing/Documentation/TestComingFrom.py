@@ -61,8 +61,9 @@ def write_files():
         samples.write_surface(f"{side}.midthickness.surf.gii", POINTS, FACES, f"Cortex{name}")
     samples.write_gifti("L.thickness.shape.gii", {"thickness": maps[:, 0]})
     other, faces = samples.sphere(4, 100.0)
-    for name in ("fsLR.L.sphere.surf.gii", "fsLR.L.midthickness.surf.gii"):
-        samples.write_surface(name, other @ TURN, faces)
+    brain = 0.7 * other  # no sphere of registration, whose radius is 100 mm
+    samples.write_surface("fsLR.L.sphere.surf.gii", other @ TURN, faces)
+    samples.write_surface("fsLR.L.midthickness.surf.gii", brain @ TURN, faces)
     samples.write_surface("L.sphere.surf.gii", 2 * POINTS, FACES)
     samples.write_gifti("L.roi.shape.gii", {"roi": cortex})
     ball = np.linalg.norm(np.indices((20, 20, 20)).T - [9, 9, 9], axis=-1) < 7
@@ -79,9 +80,9 @@ def write_files():
     os.makedirs("bert/label")
     os.mkdir("smoothed")
     os.makedirs("fsaverage5/surf")
-    for name in ("lh.white", "lh.sphere.reg"):
+    for name, points in (("lh.white", brain), ("lh.sphere.reg", other)):
         samples.write_surface(f"bert/surf/{name}", POINTS, FACES)
-        samples.write_surface(f"fsaverage5/surf/{name}", other @ TURN, faces)
+        samples.write_surface(f"fsaverage5/surf/{name}", points @ TURN, faces)
     nib.freesurfer.write_morph_data("bert/surf/lh.thickness", maps[:, 0], fnum=len(FACES))
     for name in ("sub-01.thickness.mgh", "sub-02.thickness.mgh"):
         samples.write_mgh(name, maps[:, 0])
