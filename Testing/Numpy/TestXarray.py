@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Data of xarray, uxarray and xugrid by their attributes, and masks that differ by column."""
 
-import importlib.util
 import sys
 import unittest
 import warnings
@@ -100,7 +99,6 @@ class ScaleFilter(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, pattern):
                 scale_filter(array, 0.9, **options)
 
-    @unittest.skipUnless(importlib.util.find_spec("xarray"), "xarray is not installed")
     def test_data_array_of_xarray(self):
         import xarray
 
