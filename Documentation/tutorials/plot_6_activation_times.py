@@ -79,7 +79,8 @@ mesh = pyvista.PolyData.from_regular_faces(points, faces)
 mesh["time"] = found
 plotter = pyvista.Plotter(shape=(1, 2), window_size=(900, 450), border=False)
 plotter.add_mesh(mesh, scalars="time", cmap="rainbow_r", show_scalar_bar=False)
-plotter.add_mesh(mesh.contour(np.arange(10, found.max(), 10), scalars="time"), color="black", line_width=2)
+plotter.add_mesh(mesh.contour(np.arange(10, found.max(), 10), scalars="time"), color="black", line_width=3,
+                 render_lines_as_tubes=True)
 plotter.add_text("isochrones every 10 ms", font_size=10)
 plotter.view_vector(look["view"], look["up"])
 plotter.subplot(0, 1)
