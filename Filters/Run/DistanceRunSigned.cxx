@@ -5,10 +5,10 @@
 #include "Run/DistanceRun.h"
 
 #include "Core/Geodesics/CurveSides.h"
+#include "Core/Geodesics/SmoothRegion.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
@@ -53,116 +53,6 @@ std::vector<std::vector<Index>> OrderClosedLines(const SourceShapes& shapes)
     lines.push_back(std::move(line));
   }
   return lines;
-}
-
-/// Call use(w) for each neighbour w of a vertex, twice for those inside.
-template <typename Use>
-void ForEachNeighbour(const TriangleMesh& mesh, Index v, const Use& use)
-{
-  const auto row = static_cast<std::size_t>(v);
-  for (Index k = mesh.VertexCornersBegin()[row]; k < mesh.VertexCornersBegin()[row + 1]; ++k)
-  {
-    const Index corner = mesh.VertexCorners()[static_cast<std::size_t>(k)];
-    use(static_cast<std::size_t>(mesh.OtherCorner(corner, 1)));
-    use(static_cast<std::size_t>(mesh.OtherCorner(corner, 2)));
-  }
-}
-
-/// The smoothest function that is not above 0 within a region nor below it outside, near its boundary, where it
-/// is 0: the minimum of
-///   |L u|^2 + 0.02 |u - d|^2
-/// with the difference L u from the mean of the neighbours and the distance d in edges, 1/2 at the ends of those
-/// that leave the region and at most 6, by accelerated projected gradients (A. Beck, M. Teboulle, SIAM J.
-/// Imaging Sci. 2, 2009). The middle of each edge that leaves the region is 2 % of the largest distance off on a
-/// sphere of 642 vertices, and this boundary 0.7 %.
-std::vector<double> SmoothRegion(const TriangleMesh& mesh, const std::vector<char>& inside)
-{
-  constexpr double farthest = 6.0;
-  constexpr double nearness = 0.02;
-  constexpr int iterations = 60;
-  std::vector<double> distances(inside.size(), farthest);
-  std::vector<Index> band;
-  const auto add = [&](Index v, double distance)
-  {
-    distances[static_cast<std::size_t>(v)] = std::min(distance, farthest - 1e-9);
-    band.push_back(v);
-  };
-  for (Index v = 0; v < mesh.NumberOfVertices(); ++v)
-  {
-    bool isEnd = false;
-    ForEachNeighbour(mesh, v,
-      [&](std::size_t w) { isEnd = isEnd || inside[w] != inside[static_cast<std::size_t>(v)]; });
-    if (isEnd)
-    {
-      add(v, 0.5);
-    }
-  }
-  for (std::size_t k = 0; k < band.size(); ++k)
-  {
-    const double next = distances[static_cast<std::size_t>(band[k])] + 1.0;
-    ForEachNeighbour(mesh, band[k],
-      [&](std::size_t w)
-      {
-        if (next < farthest + 1.0 && distances[w] == farthest)
-        {
-          add(static_cast<Index>(w), next);
-        }
-      });
-  }
-  for (std::size_t v = 0; v < inside.size(); ++v)
-  {
-    distances[v] *= inside[v] ? -1.0 : 1.0;
-  }
-  const auto differences = [&](const std::vector<double>& u)
-  {
-    std::vector<double> found(u.size(), 0.0);
-    for (const Index v : band)
-    {
-      double sum = 0.0;
-      double count = 0.0;
-      ForEachNeighbour(mesh, v,
-        [&](std::size_t w)
-        {
-          sum += u[w];
-          ++count;
-        });
-      found[static_cast<std::size_t>(v)] = u[static_cast<std::size_t>(v)] - sum / count;
-    }
-    return found;
-  };
-  // At open ends u may have any slope: a neighbour that comes once is there.
-  std::vector<Index> ends;
-  std::copy_if(band.begin(), band.end(), std::back_inserter(ends),
-    [&](Index v)
-    {
-      std::size_t odd = 0; // all that come twice leave no bit
-      ForEachNeighbour(mesh, v, [&](std::size_t w) { odd ^= w + 1; });
-      return odd != 0;
-    });
-  std::vector<double> u = distances;
-  std::vector<double> ahead = u;
-  double momentum = 1.0;
-  for (int iteration = 0; iteration < iterations; ++iteration)
-  {
-    std::vector<double> bend = differences(ahead);
-    for (const Index v : ends)
-    {
-      bend[static_cast<std::size_t>(v)] = 0.0;
-    }
-    const std::vector<double> slope = differences(bend);
-    const double next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
-    for (const Index vertex : band)
-    {
-      const auto v = static_cast<std::size_t>(vertex);
-      const double step = (slope[v] + nearness * (ahead[v] - distances[v])) / (4.0 + nearness);
-      const double moved =
-        inside[v] ? std::min(ahead[v] - step, 0.0) : std::max(ahead[v] - step, 0.0);
-      ahead[v] = moved + (momentum - 1.0) / next * (moved - u[v]);
-      u[v] = moved;
-    }
-    momentum = next;
-  }
-  return u;
 }
 
 } // namespace
