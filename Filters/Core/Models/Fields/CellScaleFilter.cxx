@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Fields/CellScaleFilter.h"
 
-#include "Core/Foundation/Columns.h"
+#include "Core/Foundation/ColumnPanels.h"
 #include "Core/Models/Fields/ResolventSeries.h"
 #include "Core/Operators/SparsePattern.h"
 #include "Core/Solvers/SolverChoice.h"
@@ -60,20 +60,15 @@ void CellScaleFilter::Apply(Values& f, const ProgressMonitor& progress)
     }
   }
   this->OfVertices.Apply(u, progress.Part(0.2, 0.5));
-  const auto columns = static_cast<double>(f.cols());
-  for (Eigen::Index first = 0; first < f.cols(); first += ColumnPanel)
-  {
-    const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, f.cols() - first);
-    Values panel = detail.middleCols(first, count);
-    const auto at = [&](Eigen::Index column)
-    { return 0.5 + 0.5 * static_cast<double>(column) / columns; };
-    SumResolvents(
-      this->Series, panel,
-      [&](const Values& b, Values& y, const ProgressMonitor& part)
-      { this->ApplyResolvent(b, y, part); },
-      this->Parallel, progress.Part(at(first), at(first + count)));
-    detail.middleCols(first, count) = panel;
-  }
+  ForEachPanel(detail, progress.Part(0.5, 1.0),
+    [this](Values& panel, const ProgressMonitor& ofPanel)
+    {
+      SumResolvents(
+        this->Series, panel,
+        [this](const Values& b, Values& y, const ProgressMonitor& part)
+        { this->ApplyResolvent(b, y, part); },
+        this->Parallel, ofPanel);
+    });
   f = this->Transfer.ToCells(u) + detail;
 }
 

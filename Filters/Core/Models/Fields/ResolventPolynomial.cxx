@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Fields/ResolventPolynomial.h"
 
-#include "Core/Foundation/Columns.h"
+#include "Core/Foundation/ColumnPanels.h"
 #include "Core/Foundation/Resize.h"
 #include "Core/Models/Fields/ResolventSeries.h"
 #include "Core/Solvers/SolverChoice.h"
@@ -88,17 +88,8 @@ void ResolventPolynomial::Apply(Values& u, const ProgressMonitor& progress)
     this->System.SetUpSolver(progress.Part(0.0, setup));
     this->IsPrepared = true;
   }
-  const auto columns = static_cast<double>(u.cols());
-  for (Eigen::Index first = 0; first < u.cols(); first += ColumnPanel)
-  {
-    const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, u.cols() - first);
-    const double share = (1.0 - setup) / columns;
-    Values panel = u.middleCols(first, count);
-    this->ApplyToPanel(panel,
-      progress.Part(setup + share * static_cast<double>(first),
-        setup + share * static_cast<double>(first + count)));
-    u.middleCols(first, count) = panel;
-  }
+  ForEachPanel(u, progress.Part(setup, 1.0),
+    [this](Values& panel, const ProgressMonitor& part) { this->ApplyToPanel(panel, part); });
 }
 
 void ResolventPolynomial::ApplyToPanel(Values& u, const ProgressMonitor& progress)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Fields/ResolventPower.h"
 
-#include "Core/Foundation/Columns.h"
+#include "Core/Foundation/ColumnPanels.h"
 #include "Core/Solvers/SolverChoice.h"
 
 #include <algorithm>
@@ -94,16 +94,8 @@ ResolventPower::ResolventPower(std::shared_ptr<const Assembler> assembler,
 
 void ResolventPower::Apply(Values& u, const ProgressMonitor& progress)
 {
-  const auto columns = static_cast<double>(u.cols());
-  for (Eigen::Index first = 0; first < u.cols(); first += ColumnPanel)
-  {
-    const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, u.cols() - first);
-    Values panel = u.middleCols(first, count);
-    this->ApplyToPanel(panel,
-      progress.Part(
-        static_cast<double>(first) / columns, static_cast<double>(first + count) / columns));
-    u.middleCols(first, count) = panel;
-  }
+  ForEachPanel(u, progress,
+    [this](Values& panel, const ProgressMonitor& part) { this->ApplyToPanel(panel, part); });
 }
 
 void ResolventPower::ApplyToPanel(Values& u, const ProgressMonitor& progress)

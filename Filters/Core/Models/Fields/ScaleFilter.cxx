@@ -87,6 +87,7 @@ void ScaleFilter::Apply(Values& u, const ProgressMonitor& progress)
   if (!this->Polynomial)
   {
     this->Polynomial = this->MakePolynomial();
+    this->MakePolynomial = nullptr; // it keeps the coefficients
   }
   this->Polynomial->Apply(u, progress);
 }

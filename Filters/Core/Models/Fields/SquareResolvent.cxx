@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Core/Models/Fields/SquareResolvent.h"
 
-#include "Core/Foundation/Columns.h"
+#include "Core/Foundation/ColumnPanels.h"
 #include "Core/Foundation/Resize.h"
 #include "Core/Operators/SparseProduct.h"
 #include "Core/Solvers/LinearSolver.h"
@@ -51,31 +51,29 @@ SquareResolvent::SquareResolvent(std::shared_ptr<const Assembler> assembler,
 bool SquareResolvent::Apply(Values& u, const ProgressMonitor& progress)
 {
   const TriangleMesh& mesh = this->Assembly->Mesh();
-  Values filtered(u.rows(), u.cols());
-  for (Eigen::Index first = 0; first < u.cols(); first += ColumnPanel)
-  {
-    const Eigen::Index count = std::min<Eigen::Index>(ColumnPanel, u.cols() - first);
-    const auto at = [&](Eigen::Index column)
-    { return static_cast<double>(column) / static_cast<double>(u.cols()); };
-    Values panel = u.middleCols(first, count);
-    Eigen::RowVectorXd mean;
-    FindMeans(mesh, panel, mean, this->Parallel);
-    panel.rowwise() -= mean;
-    const Values right = mesh.ControlAreas().asDiagonal() * panel;
-    const bool succeeds = ForColumns(count,
-      [&](auto k) {
-        return this->Iterate<decltype(k)::value>(
-          panel, progress.Part(at(first), at(first + count)));
-      });
-    if (!succeeds)
+  Values filtered = u;
+  bool succeeds = true;
+  ForEachPanel(filtered, progress,
+    [&](Values& panel, const ProgressMonitor& part)
     {
-      return false;
-    }
-    this->Balanced.Restore(mesh, right, panel, this->Parallel);
-    filtered.middleCols(first, count) = panel.rowwise() + mean;
+      if (!succeeds)
+      {
+        return;
+      }
+      Eigen::RowVectorXd mean;
+      FindMeans(mesh, panel, mean, this->Parallel);
+      panel.rowwise() -= mean;
+      const Values right = mesh.ControlAreas().asDiagonal() * panel;
+      succeeds = ForColumns(
+        panel.cols(), [&](auto k) { return this->Iterate<decltype(k)::value>(panel, part); });
+      this->Balanced.Restore(mesh, right, panel, this->Parallel);
+      panel.rowwise() += mean;
+    });
+  if (succeeds)
+  {
+    u.swap(filtered);
   }
-  u.swap(filtered);
-  return true;
+  return succeeds;
 }
 
 template <int K>
