@@ -83,13 +83,14 @@ void DerivativesRun::AddBand(const Values& speeds, const Values& slopeErrors)
       upper(i, c) = smallest > 0.0 ? 1.0 / smallest : infinity;
     }
   }
-  for (auto& [name, rows] : { std::pair<const char*, Values&>{ "SpeedLower", lower },
-         std::pair<const char*, Values&>{ "SpeedUpper", upper } })
+  const auto add = [this](const char* name, Values& bound)
   {
-    this->Results.push_back({ name, Place::PerPoint, OutputType::Double, std::move(rows) });
+    this->Results.push_back({ name, Place::PerPoint, OutputType::Double, std::move(bound) });
     this->Results.back().IsBesideResult = true;
     this->Results.back().MayBeInfinite = true;
-  }
+  };
+  add("SpeedLower", lower);
+  add("SpeedUpper", upper);
 }
 
 Values DerivativesRun::FindTurns(
