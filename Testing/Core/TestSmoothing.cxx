@@ -87,6 +87,37 @@ TEST(Smoothing, DampsSphericalHarmonicsAtTheirEigenvalues)
   }
 }
 
+TEST(Smoothing, ByCrossValidationComesNearTheBestOnNoisyValues)
+{
+  // The mean over ten draws of noise 1.0; a single one depends on the draw.
+  for (int subdivisions = 3; subdivisions <= 4; ++subdivisions)
+  {
+    const Surface s = Icosphere(subdivisions);
+    const auto assembler = MakeAssembler(s);
+    const TriangleMesh& mesh = assembler->Mesh();
+    const Values field = Sample(mesh, s, SeaTemperature);
+    const int draws = 10;
+    double automatic = 0.0, known = 0.0, level = 0.0;
+    for (int draw = 0; draw < draws; ++draw)
+    {
+      const auto data =
+        ValuesAt(mesh, WithNoise(mesh, field, 1.0, draw), [](Index i) { return i < 162; });
+      Interpolation::Settings settings;
+      const auto result = Interpolate(assembler, data, settings);
+      automatic += RootMeanSquare(mesh, result.U - field) / draws;
+      level += result.Columns[0].NoiseLevel / draws;
+      settings.Smoothing = Choice::NoiseLevel;
+      settings.NoiseLevel = 1.0;
+      known += RootMeanSquare(mesh, Interpolate(assembler, data, settings).U - field) / draws;
+    }
+    std::printf("%6d vertices: error %.3f, with the noise level %.3f, estimated level %.3f\n",
+      mesh.NumberOfVertices(), automatic, known, level);
+    EXPECT_LT(automatic, 0.55);
+    EXPECT_LT(known, 0.55);
+    EXPECT_NEAR(level, 1.0, 0.2);
+  }
+}
+
 TEST(Smoothing, MeasuresAreThoseOfTheInfluenceMatrix)
 {
   const Surface s = Torus(24, 14);
@@ -220,6 +251,64 @@ TEST(Smoothing, ByCrossValidationTakesAtMostFourTimesOneSolve)
     std::printf("%d values: exact %.3f s, automatic %.3f s\n", data.Count(), exact, automatic);
     EXPECT_LT(automatic, 4.0 * exact);
   }
+}
+
+TEST(Smoothing, HasStandardErrorsThatCoverTheTruth)
+{
+  // Fields of the model itself: its precision is mu Q, of values with the noise 0.3.
+  const Surface s = Icosphere(3);
+  const auto assembler = MakeAssembler(s);
+  const TriangleMesh& mesh = assembler->Mesh();
+  const Index n = mesh.NumberOfVertices();
+  const double kappa = 2.0 * mesh.LengthUnit();
+  const double mu = 0.02;
+  const double noise = 0.3;
+  const SmoothnessEnergy energy(*assembler, CotanWeights(mesh), kappa, RimCondition::Natural);
+  const Eigen::LLT<Eigen::MatrixXd> factor(mu / (noise * noise) * Eigen::MatrixXd(energy.Matrix()));
+  const Index fields = 1000;
+  Values truth(n, fields);
+  for (Index i = 0; i < n; ++i)
+  {
+    for (Index f = 0; f < fields; ++f)
+    {
+      truth(i, f) = Gaussian(11, f, i);
+    }
+  }
+  truth = Values(factor.matrixU().solve(Eigen::MatrixXd(truth)));
+  Values measured = truth;
+  for (Index i = 0; i < n; ++i)
+  {
+    for (Index f = 0; f < fields; ++f)
+    {
+      measured(i, f) += noise * Gaussian(12, f, i);
+    }
+  }
+  const auto known = [](Index i) { return i < 162; };
+  Interpolation::Settings settings = InterpolationSettings(Choice::Given, mu);
+  settings.Kappa = kappa;
+  settings.NoiseLevel = noise;
+  settings.ComputeError = true;
+  const auto result = Interpolate(assembler, ValuesAt(mesh, measured, known), settings);
+  constexpr double quantile = 1.6448536269514722; // of 90 %, on both sides
+  const auto covered = [&](const Interpolation::Result& r, Index first, Index count)
+  {
+    return ((r.U - truth.middleCols(first, count)).cwiseAbs().array() <= quantile * r.Error.array())
+      .cast<double>()
+      .mean();
+  };
+  const double given = covered(result, 0, fields);
+  // With mu and the noise from the data, on some of the fields
+  settings = Interpolation::Settings();
+  settings.Kappa = kappa;
+  settings.ComputeError = true;
+  const Index some = 40;
+  const auto automatic =
+    Interpolate(assembler, ValuesAt(mesh, measured.leftCols(some), known), settings);
+  const double found = covered(automatic, 0, some);
+  std::printf("within the band of 90 %%: %.2f %%; with the model of the data %.2f %%\n",
+    100.0 * given, 100.0 * found);
+  EXPECT_NEAR(given, 0.9, 0.03);
+  EXPECT_NEAR(found, 0.9, 0.06);
 }
 
 TEST(Smoothing, StandardErrorsAreThoseOfTheDenseMatrix)

@@ -160,6 +160,22 @@ bool IsFinite(vtkDataArray* array, vtkIdType point)
   return finite;
 }
 
+/// Whether fronts meet or begin at a point or cell, in one component at least: their speed is missing there.
+bool FrontTurns(vtkDataSetAttributes* arrays, const std::string& speed, vtkIdType i)
+{
+  const std::string base = speed.substr(0, speed.find("Speed"));
+  bool found = false;
+  for (const char* const suffix : { "Collision", "Focus" })
+  {
+    vtkDataArray* const turns = arrays->GetArray((base + suffix).c_str());
+    for (int c = 0; turns && c < turns->GetNumberOfComponents(); ++c)
+    {
+      found = found || turns->GetComponent(i, c) != 0.0;
+    }
+  }
+  return found;
+}
+
 /// Whether the added arrays are finite; unused points keep their value, even NaN, derivatives are
 /// missing beside missing data and Laplacians at boundaries that do not determine them, and distances
 /// are infinite where no source is near.
@@ -196,8 +212,9 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
     {
       vtkDataArray* const array = added->GetArray(a);
       const std::string name = array->GetName();
-      // Speeds are missing where fronts meet or begin, and the upper bounds of slow changes infinite.
-      if (name.find("Speed") != std::string::npos && filter->IsA("vtkSurfaceDerivativesFilter"))
+      // Bounds are as unknown as the errors, and infinite where waves may be everywhere at once.
+      if (name.find("SpeedLower") != std::string::npos ||
+        name.find("SpeedUpper") != std::string::npos)
       {
         continue;
       }
@@ -212,12 +229,13 @@ bool AddedIsFinite(vtkPolyDataAlgorithm* filter, vtkPolyData* input)
       for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
       {
         const bool isNew = !before->HasArray(array->GetName());
+        const bool turns = name.find("Speed") != std::string::npos && FrontTurns(added, name, i);
         const bool mayBeInfinite = isDistance && array == added->GetScalars();
         // Points that no triangle uses keep their values, and have no standard error.
         const bool keepsValue = hasErrors && given && added->GetScalars() &&
           added->GetScalars()->GetComponent(i, 0) == given->GetComponent(i, 0);
         finite = finite &&
-          (!isNew || IsFinite(array, i) || isMissing(given, i) || keepsValue ||
+          (!isNew || IsFinite(array, i) || isMissing(given, i) || keepsValue || turns ||
             (mayBeInfinite && array->GetComponent(i, 0) > 0.0) ||
             (isField && std::isnan(array->GetComponent(i, 0)))); // no triangle has the point
       }
