@@ -3,6 +3,7 @@
 #include "Core/Models/Fields/ResolventPower.h"
 
 #include "Core/Foundation/ColumnPanels.h"
+#include "Core/Foundation/Random.h"
 #include "Core/Solvers/SolverChoice.h"
 
 #include <algorithm>
@@ -123,18 +124,34 @@ void ResolventPower::ApplyToPanel(Values& u, const ProgressMonitor& progress)
   u.swap(sum);
 }
 
+void ResolventPower::Prepare(std::size_t pole, const ProgressMonitor& progress)
+{
+  if (this->ArePrepared[pole])
+  {
+    return;
+  }
+  ImplicitSystem& system = this->Systems[pole];
+  system.SetUpSolver(progress.Part(0.0, 0.5));
+  const Vector& areas = this->Assembly->Mesh().ControlAreas();
+  Values noise(areas.size(), 1);
+  for (Eigen::Index i = 0; i < noise.rows(); ++i)
+  {
+    noise(i, 0) = areas[i] * (UniformRandom(0, 0, i) - 0.5);
+  }
+  Values found = Values::Zero(noise.rows(), 1);
+  StepReport report;
+  system.Solve(noise, found, report, progress.Part(0.5, 1.0));
+  this->ArePrepared[pole] = true;
+}
+
 void ResolventPower::Solve(
   std::size_t pole, const Values& b, Values& x, const ProgressMonitor& progress)
 {
   ImplicitSystem& system = this->Systems[pole];
-  if (!this->ArePrepared[pole])
-  {
-    system.SetUpSolver(progress.Part(0.0, 0.5));
-    this->ArePrepared[pole] = true;
-  }
+  this->Prepare(pole, progress.Part(0.0, 0.5));
   Values right = this->Assembly->Mesh().ControlAreas().asDiagonal() * b;
   x = b / this->Sum.Poles[static_cast<Eigen::Index>(pole)];
-  system.Solve(right, x, this->Report, progress);
+  system.Solve(right, x, this->Report, progress.Part(0.5, 1.0));
 }
 
 } // namespace SurfaceDiffusion

@@ -35,6 +35,9 @@ public:
 
 private:
   void ApplyToPanel(Values& u, const ProgressMonitor& progress);
+  /// The first solve with a matrix decides the method of all (FallBackSolver), so that it is one of noise
+  /// that is always the same.
+  void Prepare(std::size_t pole, const ProgressMonitor& progress);
   /// x = (q + B)^-1 b with the pole of this number.
   void Solve(std::size_t pole, const Values& b, Values& x, const ProgressMonitor& progress);
 
