@@ -154,7 +154,7 @@ TEST(CoarseSurfaces, AreTakenByEveryKind)
     [](const FilterKind& kind, vtkPolyData* surface)
     {
       const auto filter = RunKind(kind, surface);
-      ExpectPromises(filter, surface, kind.Result);
+      ExpectPromises(filter, surface, kind.Result.c_str());
     });
 }
 
@@ -229,7 +229,7 @@ TEST(CoarseSurfaces, GiveTheSameTurned)
       const auto a = RunKind(kind, given);
       vtkDataArray* const before = ResultOf(a, kind.Result);
       const bool isVector =
-        before && before->GetNumberOfComponents() == 3 && std::string(kind.Result).find("rgb") != 0;
+        before && before->GetNumberOfComponents() == 3 && kind.Result.find("rgb") != 0;
       const bool isOpen = undetermined.count(kind.Name + std::string(" ") + named.Name) > 0;
       if (others.count(kind.Name) || isOpen || isVector || !before)
       {

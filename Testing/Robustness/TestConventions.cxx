@@ -111,8 +111,8 @@ TEST(Conventions, NothingOutlivesAFilter)
       {
         made.emplace_back(filter->GetOutputDataObject(port));
       }
-      made.emplace_back(filter->GetOutput()->GetPointData()->GetArray(kind.Result));
-      made.emplace_back(filter->GetOutput()->GetCellData()->GetArray(kind.Result));
+      made.emplace_back(filter->GetOutput()->GetPointData()->GetArray(kind.Result.c_str()));
+      made.emplace_back(filter->GetOutput()->GetCellData()->GetArray(kind.Result.c_str()));
     }
     for (const auto& object : made)
     {

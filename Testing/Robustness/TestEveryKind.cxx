@@ -504,8 +504,8 @@ TEST_P(EveryKindOfParts, TreatsUnequalBlocksAsItDoesPartsOfOneSurface)
   for (unsigned int b = 0; b < 2; ++b)
   {
     vtkPolyData* const block = vtkPolyData::SafeDownCast(output->GetBlock(b));
-    vtkDataArray* result = block->GetPointData()->GetArray(this->GetParam().Result);
-    result = result ? result : block->GetCellData()->GetArray(this->GetParam().Result);
+    vtkDataArray* result = block->GetPointData()->GetArray(this->GetParam().Result.c_str());
+    result = result ? result : block->GetCellData()->GetArray(this->GetParam().Result.c_str());
     ASSERT_NE(result, nullptr);
     for (vtkIdType i = 0; i < result->GetNumberOfTuples(); ++i, ++row)
     {

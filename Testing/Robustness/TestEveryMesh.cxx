@@ -262,7 +262,7 @@ TEST_P(EveryBadMesh, IsTakenByEveryModel)
     SCOPED_TRACE(kind.Name);
     const auto filter = kind.Make();
     FitHeights(filter, this->Surface);
-    this->Run(filter, kind.Result);
+    this->Run(filter, kind.Result.c_str());
   }
 }
 

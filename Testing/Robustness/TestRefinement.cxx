@@ -102,8 +102,9 @@ TEST_P(RefinementOf, GivesWhatTheFilterGivesOnTheRefinedSurface)
   EXPECT_EQ(messages.Warnings.size(), ofGiven.Warnings.size());
   EXPECT_GT(refining->GetOutput()->GetNumberOfCells(), 4 * spheres.Coarse->GetNumberOfCells());
   EXPECT_NE(refining->GetOutput()->GetCellData()->GetArray("vtkOriginalCellIds"), nullptr);
-  EXPECT_NE(refining->GetOutput()->GetPointData()->GetArray(this->GetParam().Result) != nullptr,
-    refining->GetOutput()->GetCellData()->GetArray(this->GetParam().Result) != nullptr);
+  EXPECT_NE(
+    refining->GetOutput()->GetPointData()->GetArray(this->GetParam().Result.c_str()) != nullptr,
+    refining->GetOutput()->GetCellData()->GetArray(this->GetParam().Result.c_str()) != nullptr);
   EXPECT_EQ(Difference(refining, given), "");
 }
 

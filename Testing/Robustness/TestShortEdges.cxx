@@ -162,7 +162,7 @@ TEST_P(ShortEdgesFor, ArePointsOfTheSurface)
         << array->GetName();
     }
   }
-  if (vtkDataArray* const result = split->GetPointData()->GetArray(kind.Result))
+  if (vtkDataArray* const result = split->GetPointData()->GetArray(kind.Result.c_str()))
   {
     const vtkIdType copy = result->GetNumberOfTuples() - 1;
     for (int k = 0; k < result->GetNumberOfComponents(); ++k)

@@ -94,7 +94,8 @@ TEST(Work, OfIterativeSolversPerStepIsBounded)
       EXPECT_EQ(found, 0.0) << "has no bound";
       continue;
     }
-    std::printf("%-24s %6.1f of %d iterations per step\n", kind.Name, found, largest->second);
+    std::printf(
+      "%-24s %6.1f of %d iterations per step\n", kind.Name.c_str(), found, largest->second);
     EXPECT_LE(found, largest->second);
     EXPECT_GE(10.0 * found, largest->second) << "the bound allows ten times the work";
     ++iterative;
