@@ -65,9 +65,12 @@ class TestPythonPlugin(unittest.TestCase):
     def test_random_clicks_give_the_same_bits_and_messages(self):
         self.compare("clicks/")
 
+    def test_all_kinds_of_run_give_the_same_bits_and_messages(self):
+        self.compare("kind ")
+
     def test_all_kinds_of_input_give_the_same_bits(self):
         self.compare("noisy/", "mixed/", "one thread/", "refined/", "limit/", "float32/", "int32/", "uint8/",
-                     "vtk", "colors/", "single/", "samples/", "sources", "moved/", "means/", "feature/")
+                     "vtk", "colors/", "single/", "samples/", "sources", "means/", "feature/")
 
     def test_special_input_gives_the_same_bits(self):
         self.compare("open/", "converted", "empty array/", "polygons")

@@ -8,6 +8,7 @@ TestPythonPlugin.py compares the two."""
 
 import inspect
 import json
+import os
 import random
 import sys
 import time
@@ -22,6 +23,9 @@ from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkIdTypeArray, vtkPoints, 
 from vtkmodules.vtkCommonDataModel import (
     vtkCellArray, vtkDataObject, vtkPolyData, vtkUnstructuredGrid,
 )
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir))
+from kinds_of_run import kinds_of_run  # noqa: E402
 
 CLICKS = 12  # runs of each filter with random properties
 SEAMS = {"ids", "random", "unused", "apart", "absent", "flags", "twice"}  # ways to stitch pieces, for three filters
@@ -249,6 +253,36 @@ def typed_data(kind):
     return data
 
 
+def with_arrays_of_all_kinds():
+    """The arrays of kinds_of_run.txt on the sphere."""
+    data = copy_of(dataset(noisy(sphere_with_arrays())))
+    n, m = data.GetNumberOfPoints(), data.GetNumberOfCells()
+    dice = np.random.default_rng(7)
+    for attributes, name, values in (
+        (data.GetCellData(), "c", 2.0 + 0.5 * dice.normal(size=m)),
+        (data.GetCellData(), "weights", np.arange(m) % 4 * 0.25),
+        (data.GetPointData(), "weights", np.arange(n) % 4 * 0.25),
+        (data.GetPointData(), "rgb", dice.integers(0, 255, (n, 3), np.uint8)),
+        (data.GetPointData(), "mask", np.arange(n) % 17 == 3),
+        (data.GetPointData(), "e1", dice.normal(size=(n, 3))),
+        (data.GetPointData(), "sources", np.where(np.arange(n) % 17 == 3, 1 + np.arange(n) % 3, 0)),
+    ):
+        array = numpy_to_vtk(np.ascontiguousarray(values * 1 if values.dtype == bool else values), deep=True)
+        array.SetName(name)
+        attributes.AddArray(array)
+    return producer(data)
+
+
+def run_kinds():
+    source = with_arrays_of_all_kinds()
+    for kind, class_name, values in kinds_of_run():
+        values = {key: ["CELLS" if value[1] else "POINTS", value[0]] if isinstance(value, tuple) else value
+                  for key, value in values.items()}
+        if "PathPoints" in values:
+            values["PathPoints"] = producer(scattered())
+        run(class_name[len("vtk"):], source, "kind " + kind, **values)
+
+
 def weightless():
     """The sphere with weights of 0 and other values there on a part of it."""
     data = copy_of(dataset(sphere_with_arrays()))
@@ -289,7 +323,6 @@ def run_kinds_of_input():
     for method in ("Heat", "Eikonal", "Exact"):
         run("SurfaceDistanceFilter", sphere_with_arrays(), "sources" + method, Sources=points, Method=method,
             ComputeGradient=1, PathPoints=producer(scattered()))
-    run("HarmonicMapFilter", noisy(sphere_with_arrays()), "moved", MoveVertices=1)
     run("SurfaceSegmentationFilter", sphere_with_arrays(), "means", InputArray=["POINTS", "f"],
         AutomaticMeans=0, NumberOfRegions=2, Mean=[1, 0, -0.3, 2, 0, 0.3])
     run("TuringTextureFilter", sphere_with_arrays(), "feature", FeatureSize=0.3)
@@ -550,7 +583,7 @@ def list_arrays(data):
 begin = time.perf_counter()
 simple.LoadPlugin(sys.argv[1], remote=False, ns=globals())
 seconds = time.perf_counter() - begin
-steps = (list_properties, run_clicks, run_kinds_of_input, run_left_out, run_special_input, run_pieces, run_edits,
+steps = (list_properties, run_clicks, run_kinds, run_kinds_of_input, run_left_out, run_special_input, run_pieces, run_edits,
          run_times, run_faults, run_aborts)
 for step in steps:
     step()
