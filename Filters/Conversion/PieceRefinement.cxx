@@ -35,11 +35,9 @@ bool IsInteger(vtkDataArray* array)
   return array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
 }
 
-/// The array with a tuple more for each pair of parents. isMask: whether numbers other than 0 mean
-/// that a point is masked. isWeight: whether 0 means that it has no value. isMark: whether 0 means
-/// that it has no mark.
-vtkSmartPointer<vtkAbstractArray> Interpolate(vtkAbstractArray* from,
-  const std::vector<std::array<Index, 2>>& parents, bool isMask, bool isWeight, bool isMark)
+/// The array with a tuple more for each pair of parents.
+vtkSmartPointer<vtkAbstractArray> Interpolate(
+  vtkAbstractArray* from, const std::vector<std::array<Index, 2>>& parents, PointRole role)
 {
   const vtkIdType count = from->GetNumberOfTuples();
   const auto more = static_cast<vtkIdType>(parents.size());
@@ -51,7 +49,7 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(vtkAbstractArray* from,
   to->InsertTuples(0, count, 0, from);
   auto* const numbers = vtkDataArray::SafeDownCast(to);
   const int components = from->GetNumberOfComponents();
-  const bool rounds = numbers && IsInteger(numbers);
+  const bool areIntegers = numbers && IsInteger(numbers);
   for (vtkIdType i = 0; i < more; ++i)
   {
     const auto& [a, b] = parents[static_cast<std::size_t>(i)];
@@ -62,26 +60,9 @@ vtkSmartPointer<vtkAbstractArray> Interpolate(vtkAbstractArray* from,
     }
     for (int k = 0; k < components; ++k)
     {
-      const double first = numbers->GetComponent(a, k);
-      const double second = numbers->GetComponent(b, k);
-      double between = 0.5 * first + 0.5 * second;
-      if (isMask)
-      {
-        between = first == 0.0 ? second : first;
-      }
-      else if ((isWeight || isMark) && (first == 0.0 || second == 0.0))
-      {
-        between = 0.0;
-      }
-      else if (isMark && !std::isnan(between))
-      {
-        between = std::min(first, second);
-      }
-      else if (rounds)
-      {
-        between = components == 1 ? std::min(first, second) : std::floor(between + 0.5);
-      }
-      numbers->SetComponent(count + i, k, between);
+      numbers->SetComponent(count + i, k,
+        ValueBetween(role, areIntegers, components == 1, numbers->GetComponent(a, k),
+          numbers->GetComponent(b, k)));
     }
   }
   return to;
@@ -96,18 +77,21 @@ void InterpolatePointData(vtkPointData* from, vtkIdType points, vtkPointData* to
   for (int n = 0; n < from->GetNumberOfArrays(); ++n)
   {
     vtkAbstractArray* const array = from->GetAbstractArray(n);
-    const int role = from->IsArrayAnAttribute(n);
-    if (role == vtkDataSetAttributes::GLOBALIDS || array->GetNumberOfTuples() != points)
+    const int attribute = from->IsArrayAnAttribute(n);
+    if (attribute == vtkDataSetAttributes::GLOBALIDS || array->GetNumberOfTuples() != points)
     {
       continue;
     }
     const bool isMark = std::any_of(rules.Marks.begin(), rules.Marks.end(),
       [&](const std::string& name) { return hasName(array, name); });
-    const int added = to->AddArray(Interpolate(
-      array, parents, hasName(array, rules.Mask), hasName(array, rules.Weights), isMark));
-    if (role >= 0)
+    const PointRole role = hasName(array, rules.Mask) ? PointRole::Mask
+      : hasName(array, rules.Weights)                 ? PointRole::Weight
+      : isMark                                        ? PointRole::Mark
+                                                      : PointRole::Data;
+    const int added = to->AddArray(Interpolate(array, parents, role));
+    if (attribute >= 0)
     {
-      to->SetActiveAttribute(added, role);
+      to->SetActiveAttribute(added, attribute);
     }
   }
 }

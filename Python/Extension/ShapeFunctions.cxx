@@ -18,11 +18,13 @@
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -68,6 +70,32 @@ nb::dict Refine(
   result["longest_edge"] = refined.LongestEdge;
   result["limit_reached"] = refined.LimitReached;
   return result;
+}
+
+/// The values at new points, whose parents are points of lower numbers, in rows below the given ones. type: of
+/// the array that they are from.
+nb::object InterpolateAtPoints(
+  const nb::ndarray<const double, nb::ndim<2>, nb::device::cpu, nb::c_contig>& given,
+  const nb::ndarray<const Index, nb::ndim<2>, nb::device::cpu, nb::c_contig>& parents,
+  PointRole role, const std::string& type)
+{
+  const auto count = static_cast<Eigen::Index>(given.shape(0));
+  const auto more = static_cast<Eigen::Index>(parents.shape(0));
+  const bool areIntegers = type.front() != 'f';
+  Values values(count + more, given.shape(1));
+  std::copy(given.data(), given.data() + given.size(), values.data());
+  for (Eigen::Index i = 0; i < more; ++i)
+  {
+    const Index* const pair = parents.data() + 2 * i;
+    for (Eigen::Index k = 0; k < values.cols(); ++k)
+    {
+      const double between =
+        ValueBetween(role, areIntegers, values.cols() == 1, values(pair[0], k), values(pair[1], k));
+      // As points between new ones have it from their array
+      values(count + i, k) = type == "float32" ? double(static_cast<float>(between)) : between;
+    }
+  }
+  return ToNumpy(values);
 }
 
 /// tolerance: None for the default.
@@ -201,6 +229,12 @@ void BindShapeFunctions(nb::module_& m)
     "threshold"_a, "flank"_a);
   m.def("divide_relief", &Divide, "surface"_a, "after"_a, "levels"_a);
   m.def("refine", &Refine, "surface"_a, "length"_a, "maximum_triangles"_a, "progress"_a.none());
+  nb::enum_<PointRole>(m, "PointRole")
+    .value("Data", PointRole::Data)
+    .value("Mask", PointRole::Mask)
+    .value("Weight", PointRole::Weight)
+    .value("Mark", PointRole::Mark);
+  m.def("interpolate_at_points", &InterpolateAtPoints, "values"_a, "parents"_a, "role"_a, "type"_a);
 }
 
 } // namespace SurfaceDiffusion

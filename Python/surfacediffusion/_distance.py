@@ -197,7 +197,7 @@ maximum_distance, signed, merge_coincident_points, merge_tolerance, progress, re
         of_points = np.zeros((2, given.n_points))
         of_points[0, rows] = np.arange(1, len(rows) + 1)
         of_points[1, rows] = 0.0 if times is None else times
-        marks = interpolate_points(of_points[0], fine.parents, "mark")[given.n_points:]
+        marks = interpolate_points(of_points[0], fine.parents, _core.PointRole.Mark)[given.n_points:]
         added = np.flatnonzero(marks)
         names = np.append(names, names[marks[added].astype(int) - 1])
         if times is not None:

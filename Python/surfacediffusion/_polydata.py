@@ -226,10 +226,10 @@ def move_points(places: NDArray[np.float64], before: Any, after: Any) -> None:
 
 def refined_polydata(
     given: Any, points: NDArray[Any], triangles: NDArray[Any], cells: NDArray[Any], parents: NDArray[Any],
-    rules: dict[str, str],
+    roles: dict[str, Any],
 ) -> Any:
     """A surface with finer triangles in place of its polygons and strips, and with its arrays. cells: of the
-    triangles; parents: of new points; rules: of interpolation, by the names of arrays."""
+    triangles; parents: of new points; roles: of arrays where points are added, by the names of arrays."""
     surface = vtkPolyData()
     surface.SetPoints(make_points(points, given.GetPoints()))
     surface.SetVerts(given.GetVerts())
@@ -240,7 +240,7 @@ def refined_polydata(
     surface.SetPolys(polygons)
     surface.GetFieldData().ShallowCopy(given.GetFieldData())
     copy_arrays(given.GetPointData(), surface.GetPointData(), given.GetNumberOfPoints(),
-                lambda values, name: interpolate_points(values, parents, rules.get(name or "")),
+                lambda values, name: interpolate_points(values, parents, roles.get(name or "", _core.PointRole.Data)),
                 parents.min(axis=1), keeps=True)
     others = given.GetNumberOfVerts() + given.GetNumberOfLines()
     ids = np.concatenate([np.arange(others), cells]).astype(np.int64)

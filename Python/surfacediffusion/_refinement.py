@@ -72,34 +72,18 @@ class RefinedSurface:
         return array[self.faces]
 
 
-#: How arguments at points become those between two: what is beside a masked point is masked, beside one of
-#: weight 0 has weight 0, and beside one without a mark has none; otherwise it has the smaller mark.
-RULES = {"mask": "mask", "fidelity": "weight", "fixed": "mark", "seeds": "mark", "sources": "mark"}
+#: The roles of arguments at points, by which they are interpolated between two; others are data.
+ROLES = {"mask": _core.PointRole.Mask, "fidelity": _core.PointRole.Weight,
+         **dict.fromkeys(("fixed", "seeds", "sources"), _core.PointRole.Mark)}
 
 
-def interpolate_points(array: NDArray[Any], parents: NDArray[Any], rule: str | None = None) -> NDArray[Any]:
-    """Data (n, ...) of points, and between them: row n + i belongs to the middle of the two parents i. rule: of
-    RULES; None: they are data."""
-    n = len(array)
-    is_mark = rule == "mark" or (array.dtype.kind != "f" and array.size == len(array))
-    found = np.empty((n + len(parents), *array.shape[1:]), dtype=array.dtype)
-    found[:n] = array
-    # Parents come before their children: all that have known parents are found at once.
-    newest = np.maximum.accumulate(parents.max(axis=1)) if len(parents) else np.empty(0)
-    known = 0
-    while known < len(parents):
-        end = int(np.searchsorted(newest, n + known))
-        a, b = (found[side] for side in parents[known:end].T)
-        if rule == "mask":
-            between = np.where(a == 0, b, a)
-        elif is_mark:
-            between = np.minimum(a, b)
-        else:
-            between = 0.5 * a + 0.5 * b
-            between = between if array.dtype.kind == "f" else np.floor(between + 0.5)
-        found[n + known:n + end] = np.where((a == 0) | (b == 0), 0, between) if rule in ("weight", "mark") else between
-        known = end
-    return found
+def interpolate_points(
+    array: NDArray[Any], parents: NDArray[Any], role: _core.PointRole = _core.PointRole.Data
+) -> NDArray[Any]:
+    """Data (n, ...) of points, and between them: row n + i belongs to the middle of the two parents i."""
+    columns = np.ascontiguousarray(array.reshape(len(array), array.size // max(len(array), 1)), dtype=float)
+    found = _core.interpolate_at_points(columns, parents, role, array.dtype.name)
+    return found.astype(array.dtype).reshape(-1, *array.shape[1:])
 
 
 def refine(
@@ -293,7 +277,7 @@ def take_along(
             on_faces = bool(given["on_faces"])
         require_shape(name, array, array.ndim in (1, 2) and len(array) == (m if on_faces else n),
                       f"one row per point, of which there are {n}, or per face, {m}")
-        found = fine.at_faces(array) if on_faces else interpolate_points(array, fine.parents, RULES.get(name))
+        found = fine.at_faces(array) if on_faces else interpolate_points(array, fine.parents, ROLES.get(name, _core.PointRole.Data))
         carried[name] = place(found, on_faces)
         if name in _DATA and "on_faces" in given:
             carried["on_faces"] = on_faces

@@ -70,7 +70,7 @@ from ._polydata import (
     ABSENT, attribute_of, cell_flags, move_points, name_of, read_cells, refined_polydata, turn_polygons,
 )
 from ._refinement import (
-    ESTIMATING, RULES, RefinedSurface, interpolate_points, keywords_of, refine_as_asked,
+    ESTIMATING, ROLES, RefinedSurface, interpolate_points, keywords_of, refine_as_asked,
 )
 from ._result import (
     DiffusionResult, EdgeResult, HarmonicMapResult, Result, TensorDiffusionResult, TextureResult,
@@ -522,9 +522,9 @@ class _Block:
         if not isinstance(name, str):
             raise ValueError(f"{argument} is {shorten(name)}; allowed: the name of an array")
         if points and name in self.mesh.point_data:
-            if self.refined is not None and argument in RULES and name in self.origin.point_data:
+            if self.refined is not None and argument in ROLES and name in self.origin.point_data:
                 given = np.asarray(self.origin.point_data[name])
-                return place(interpolate_points(given, self.refined.parents, RULES[argument]), False)
+                return place(interpolate_points(given, self.refined.parents, ROLES[argument]), False)
             return place(self.mesh.point_data[name], False)
         if faces and name in self.mesh.cell_data:
             return place(np.asarray(self.mesh.cell_data[name])[self.face_cells], True)

@@ -345,6 +345,24 @@ RefinedSurface RefineEdges(const Points& points, const Triangles& triangles, dou
   return bisection.Result();
 }
 
+double ValueBetween(PointRole role, bool areIntegers, bool isSingle, double a, double b)
+{
+  if (role == PointRole::Mask)
+  {
+    return a == 0.0 ? b : a;
+  }
+  if (role != PointRole::Data && (a == 0.0 || b == 0.0))
+  {
+    return 0.0;
+  }
+  const double mean = 0.5 * a + 0.5 * b;
+  if ((role == PointRole::Mark && !std::isnan(mean)) || (areIntegers && isSingle))
+  {
+    return std::min(a, b);
+  }
+  return areIntegers ? std::floor(mean + 0.5) : mean;
+}
+
 Values InterpolateAtVertices(const RefinedSurface& refined, const Eigen::Ref<const Values>& input)
 {
   Values values(refined.Vertices.rows(), input.cols());

@@ -42,6 +42,18 @@ struct RefinedSurface
 RefinedSurface RefineEdges(const Points& points, const Triangles& triangles, double length,
   Index maximumTriangles, const ProgressMonitor& progress = ProgressMonitor());
 
+/// What values of points mean where a point is added between two.
+enum class PointRole
+{
+  Data, ///< the mean of both; of integers the rounded mean, and of labels, which are single, the smaller
+  Mask, ///< what is between a masked point (not 0) and another one is masked
+  Weight, ///< what is beside a point of weight 0 has weight 0
+  Mark ///< the smaller of two marks, and none (0) beside a point without one
+};
+
+/// The value at the middle of two points. isSingle: there is one value for each point.
+double ValueBetween(PointRole role, bool areIntegers, bool isSingle, double a, double b);
+
 /// Rows at the vertices of a refined surface, from those at the given vertices: the mean of both
 /// parents.
 Values InterpolateAtVertices(const RefinedSurface& refined, const Eigen::Ref<const Values>& input);

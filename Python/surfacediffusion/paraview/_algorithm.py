@@ -72,7 +72,8 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
     RUN: Any = None  #: the class of its runs
     NAMED_AFTER = ""  #: the array of the fields that results are named after
     MAY_REFINE_AUTOMATICALLY = False  #: whether RefineTo may be -1
-    RULES = {1: "mask", 3: "mark", 5: "weight", 6: "mark"}  #: of refinement, by the index of an array
+    #: Of arrays where points are added between two, by their index.
+    ROLES = {1: _core.PointRole.Mask, 3: _core.PointRole.Mark, 5: _core.PointRole.Weight, 6: _core.PointRole.Mark}
     DEFAULT_CHOICE: Choice | None = None
 
     def __init__(self) -> None:
@@ -353,9 +354,9 @@ class SurfaceFilter(VTKPythonAlgorithmBase):  # type: ignore[misc]
         limit = self.own["MaximumNumberOfTriangles"]
         if not length > 0.0:
             return
-        rules = {name: rule for k, rule in self.RULES.items()
+        roles = {name: role for k, role in self.ROLES.items()
                  if k in self.choices and (name := self.choices[k].name) is not None}
-        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others, rules)
+        refinement.bisect(blocks, length, limit, lambda _: self.progress(0.0), others, roles)
         if refinement.longest > 0.0:
             self._of_surfaces.append(say("Stopped", refinement.longest, length, limit))
         if refinement.triangles and reason:

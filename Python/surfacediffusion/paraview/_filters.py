@@ -355,7 +355,7 @@ class DirectionField(RunFilter):
 
 class Distance(RunFilter):
     POINT_INPUTS = 2
-    RULES = {**RunFilter.RULES, 0: "mark"}
+    ROLES = {**RunFilter.ROLES, 0: _core.PointRole.Mark}
 
     def begin(self, inputs: Any) -> None:
         RunFilter.begin(self, inputs)

@@ -26,10 +26,10 @@ class Refinement:
 
     def bisect(
         self, blocks: list[Block], length: float, limit: int, progress: Callable[[float], Any],
-        others: list[Block], rules: dict[str, str],
+        others: list[Block], roles: dict[str, Any],
     ) -> None:
         """Bisect the edges that are longer, until a block would have more triangles than the limit. others:
-        blocks without polygons, which are pieces of surfaces, too. rules: by the names of arrays."""
+        blocks without polygons, which are pieces of surfaces, too. roles: of arrays, by their names."""
         found = self._bisect_all(blocks, length, limit, progress)
         self.longest = max([refined["longest_edge"] for refined in found if refined["limit_reached"]],
                            default=0.0)
@@ -41,7 +41,7 @@ class Refinement:
             self._before.append((block, before))
             if refined is not None and len(refined["parents"]):
                 block.input = refined_polydata(before, refined["points"], refined["triangles"],
-                                               refined["faces"], refined["parents"], rules)
+                                               refined["faces"], refined["parents"], roles)
                 self.triangles += len(refined["triangles"])
                 block.output.ShallowCopy(block.input)
                 given = to_numpy(block.input.GetCellData().GetArray("vtkOriginalCellIds"))
