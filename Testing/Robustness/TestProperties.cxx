@@ -507,7 +507,8 @@ TEST(Properties, AreTheOnesOfTheHeaders)
     std::set_symmetric_difference(
       known.begin(), known.end(), settable.begin(), settable.end(), std::back_inserter(different));
     EXPECT_EQ(different, std::vector<std::string>())
-      << "of " << kind.Name << ", in the header or in RandomProperties.h but not in both";
+      << "of " << kind.Name
+      << ", in the header or among the settings and in RandomProperties.cxx, but not in both";
     EXPECT_GT(settable.size(), 5u);
     tested.insert(kind.Name);
   }
@@ -516,14 +517,14 @@ TEST(Properties, AreTheOnesOfTheHeaders)
   {
     run.insert(kind.Make()->GetClassName());
   }
-  EXPECT_EQ(run, tested) << "AllFilters.h and RandomProperties.h have different classes";
+  EXPECT_EQ(run, tested) << "kinds_of_run.txt and Properties.cxx have different classes";
   for (const auto& file : std::filesystem::directory_iterator(SURFACEDIFFUSION_FILTERS_DIR))
   {
     const std::string name = file.path().stem().string();
     const bool isClass = file.path().extension() == ".h" && name.rfind("vtk", 0) == 0;
     if (isClass && ReadCode(file.path()).find("static " + name + "* New()") != std::string::npos)
     {
-      EXPECT_TRUE(tested.count(name)) << name << " is not in RandomProperties.h";
+      EXPECT_TRUE(tested.count(name)) << name << " is not in Properties.cxx";
     }
   }
 }
