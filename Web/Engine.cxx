@@ -275,7 +275,8 @@ std::string Engine::Run(
   };
   return "{\"arrays\":" + Json::List(this->Results, ArrayAsJson) +
     ",\"points\":" + Json::Bool(this->ResultPoints() != nullptr) +
-    ",\"refined\":" + Json::Bool(this->Fine.IsRefined) + ",\"history\":" +
+    ",\"paths\":" + PathsAsJson(this->Paths) + ",\"refined\":" + Json::Bool(this->Fine.IsRefined) +
+    ",\"history\":" +
     Json::List(history,
       [](const auto& column)
       {
@@ -300,6 +301,7 @@ void Engine::TakeResults(const Solution& solution, const std::string& dataName)
   this->Results.clear();
   this->MovedPoints.clear();
   this->Turned = solution.Turned;
+  this->Paths = PathsOf(solution);
   this->Pattern.clear();
   for (const auto& [name, values] : solution.Arrays)
   {
