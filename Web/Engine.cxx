@@ -273,6 +273,11 @@ std::string Engine::Run(
     const std::vector<double> numbers(matrix.data(), matrix.data() + matrix.size());
     return matrix.size() == 1 ? Json::Number(numbers[0]) : Json::List(numbers);
   };
+  std::string numbers;
+  for (const auto& [label, matrix] : solution.Numbers)
+  {
+    numbers += (numbers.empty() ? "" : ",") + Json::Quoted(label) + ":" + writeMatrix(matrix);
+  }
   return "{\"arrays\":" + Json::List(this->Results, ArrayAsJson) +
     ",\"points\":" + Json::Bool(this->ResultPoints() != nullptr) +
     ",\"paths\":" + PathsAsJson(this->Paths) + ",\"refined\":" + Json::Bool(this->Fine.IsRefined) +
@@ -283,16 +288,7 @@ std::string Engine::Run(
         return "{\"name\":" + Json::Quoted(column.first) +
           ",\"values\":" + Json::List(column.second) + "}";
       }) +
-    ",\"times\":" + Json::List(steps.Time) + ",\"numbers\":{" +
-    [&]
-  {
-    std::string numbers;
-    for (const auto& [label, matrix] : solution.Numbers)
-    {
-      numbers += (numbers.empty() ? "" : ",") + Json::Quoted(label) + ":" + writeMatrix(matrix);
-    }
-    return numbers;
-  }() +
+    ",\"times\":" + Json::List(steps.Time) + ",\"numbers\":{" + numbers +
     "},\"warnings\":" + Json::List(solution.Warnings, Json::Quoted) + "}";
 }
 
