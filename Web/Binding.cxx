@@ -50,7 +50,8 @@ val Copy(const T* numbers, std::size_t count)
   return val(emscripten::typed_memory_view(count, numbers)).call<val>("slice");
 }
 
-val Copy(const std::vector<double>& numbers)
+template <typename T>
+val Copy(const std::vector<T>& numbers)
 {
   return Copy(numbers.data(), numbers.size());
 }
@@ -136,12 +137,12 @@ val GetResultPoints()
 
 val WriteSurface(const std::string& name)
 {
-  return Guarded(
-    [&]
-    {
-      const Files::Bytes bytes = TheEngine().Write(name);
-      return Copy(bytes.data(), bytes.size());
-    });
+  return Guarded([&] { return Copy(TheEngine().Write(name)); });
+}
+
+val WritePaths(const std::string& name)
+{
+  return Guarded([&] { return Copy(TheEngine().WritePaths(name)); });
 }
 
 } // namespace
@@ -160,4 +161,5 @@ EMSCRIPTEN_BINDINGS(engine)
   emscripten::function("resultTriangles", &GetResultTriangles);
   emscripten::function("resultCellOfTriangle", &GetResultCellOfTriangle);
   emscripten::function("write", &WriteSurface);
+  emscripten::function("writePaths", &WritePaths);
 }

@@ -124,7 +124,8 @@ Files::FileArray Domain::Carry(Files::FileArray array, const std::string& input)
     }
     return array;
   }
-  const bool isMark = input == "fixed" || input == "seeds" || input == "sources";
+  const bool isMark =
+    input == "fixed" || input == "seeds" || input == "sources" || input == "path_points";
   for (const std::array<Index, 2>& parents : this->Parents)
   {
     for (std::size_t k = 0; k < columns; ++k)

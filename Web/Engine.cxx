@@ -273,25 +273,22 @@ std::string Engine::Run(
     const std::vector<double> numbers(matrix.data(), matrix.data() + matrix.size());
     return matrix.size() == 1 ? Json::Number(numbers[0]) : Json::List(numbers);
   };
+  std::string numbers;
+  for (const auto& [label, matrix] : solution.Numbers)
+  {
+    numbers += (numbers.empty() ? "" : ",") + Json::Quoted(label) + ":" + writeMatrix(matrix);
+  }
   return "{\"arrays\":" + Json::List(this->Results, ArrayAsJson) +
     ",\"points\":" + Json::Bool(this->ResultPoints() != nullptr) +
-    ",\"refined\":" + Json::Bool(this->Fine.IsRefined) + ",\"history\":" +
+    ",\"paths\":" + PathsAsJson(this->Paths) + ",\"refined\":" + Json::Bool(this->Fine.IsRefined) +
+    ",\"history\":" +
     Json::List(history,
       [](const auto& column)
       {
         return "{\"name\":" + Json::Quoted(column.first) +
           ",\"values\":" + Json::List(column.second) + "}";
       }) +
-    ",\"times\":" + Json::List(steps.Time) + ",\"numbers\":{" +
-    [&]
-  {
-    std::string numbers;
-    for (const auto& [label, matrix] : solution.Numbers)
-    {
-      numbers += (numbers.empty() ? "" : ",") + Json::Quoted(label) + ":" + writeMatrix(matrix);
-    }
-    return numbers;
-  }() +
+    ",\"times\":" + Json::List(steps.Time) + ",\"numbers\":{" + numbers +
     "},\"warnings\":" + Json::List(solution.Warnings, Json::Quoted) + "}";
 }
 
@@ -300,6 +297,7 @@ void Engine::TakeResults(const Solution& solution, const std::string& dataName)
   this->Results.clear();
   this->MovedPoints.clear();
   this->Turned = solution.Turned;
+  this->Paths = PathsOf(solution);
   this->Pattern.clear();
   for (const auto& [name, values] : solution.Arrays)
   {

@@ -26,6 +26,11 @@ std::vector<std::string> WordsOf(const char* text);
 void AssignSettings(const NamedSettings& model, Settings& settings, const emscripten::val& given,
   const std::vector<std::string>& others);
 
+/// The shortest paths of a result with their lengths; none: no cells.
+Files::SurfaceFile PathsOf(const Solution& solution);
+/// [{length, start, points}]; start: the place of the path's point in the order of path_points.
+std::string PathsAsJson(const Files::SurfaceFile& paths);
+
 /// One surface with its arrays, and the results of the last run on it. All functions throw
 /// std::runtime_error with one line.
 class Engine
@@ -40,6 +45,12 @@ public:
     const ProgressMonitor::Callback& progress);
   /// The surface with the results, in the format that the name ends in. A pattern is its colours, too.
   Files::Bytes Write(const std::string& name) const;
+
+  /// The paths of the last run, lines as .vtp.
+  Files::Bytes WritePaths(const std::string& name) const
+  {
+    return Files::WriteFile(name, this->Paths);
+  }
 
   const Domain& Surface() const { return this->Given; }
   /// That the last results belong to.
@@ -72,6 +83,7 @@ private:
   Domain Fine; ///< of the last run, if it refined the surface
   std::vector<Files::FileArray> Results;
   std::vector<double> MovedPoints;
+  Files::SurfaceFile Paths;
   std::string Pattern; ///< the name of the result that is one; empty: none
   std::vector<Index> Turned; ///< the triangles that a relief has turned
   Files::SurfaceFile Samples; ///< places with values, beside the surface

@@ -118,6 +118,32 @@ Files::FileArray ArrayOf(
   return array;
 }
 
+/// The marked points, in the order of their marks, which is that of clicks.
+std::shared_ptr<const SourceShapes> MakePathPoints(
+  const Files::FileArray& marks, const Points& points)
+{
+  if (marks.OnCells)
+  {
+    throw std::runtime_error("path_points is an array of cells; allowed: one of points");
+  }
+  std::vector<std::pair<double, Eigen::Index>> rows;
+  for (std::size_t i = 0; i < marks.Numbers.size(); ++i)
+  {
+    if (marks.Numbers[i] != 0.0 && marks.Numbers[i] == marks.Numbers[i])
+    {
+      rows.emplace_back(marks.Numbers[i], static_cast<Eigen::Index>(i));
+    }
+  }
+  std::sort(rows.begin(), rows.end());
+  auto shapes = std::make_shared<SourceShapes>();
+  shapes->Places.resize(static_cast<Eigen::Index>(rows.size()), 3);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+  {
+    shapes->Places.row(static_cast<Eigen::Index>(k)) = points.row(rows[k].second);
+  }
+  return shapes;
+}
+
 } // namespace
 
 std::vector<std::string> WordsOf(const char* text)
@@ -227,6 +253,15 @@ SurfaceData Engine::ReadInputs(const NamedSettings& model, const val& given, con
       data.Rates = OnTriangles(AsMatrix(array), cells);
       continue;
     }
+    if (word == "error")
+    {
+      if (array.OnCells)
+      {
+        throw std::runtime_error("error is an array of cells; allowed: one of points");
+      }
+      data.SlopeErrors = AsMatrix(array);
+      continue;
+    }
     require(1);
     if (word == "mask" || word == "roi")
     {
@@ -253,6 +288,10 @@ SurfaceData Engine::ReadInputs(const NamedSettings& model, const val& given, con
     else if (word == "start")
     {
       data.StartTimes = array.Numbers;
+    }
+    else if (word == "path_points")
+    {
+      data.PathPoints = MakePathPoints(array, domain.Points);
     }
   }
   if (data.HasCells())

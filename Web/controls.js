@@ -53,7 +53,7 @@ function makeElement(tag, properties = {}, ...children) {
 /** Inputs that are chosen among the arrays, by the name of the panels. */
 const ARRAY_INPUTS = { MaskArray: "mask", DirectionArray: "directions", FixedArray: "fixed",
   FidelityArray: "fidelity", DiffusionRateArray: "rates", SpeedArray: "speed", SourceTimes: "start",
-  SeedArray: "seeds", CreaseArray: "creases", DataTermArray: "terms" };
+  SeedArray: "seeds", CreaseArray: "creases", DataTermArray: "terms", SlopeErrorArray: "error" };
 
 class Controls {
   /** unit(): that of the coordinates, or "". */

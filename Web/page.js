@@ -52,7 +52,8 @@ class Page {
     on("array", "change", () => { this.showControls(); this.attempt(this.showBefore()); });
     on("units", "change", () => { this.showControls(); this.comparison.update(); });
     on("cancel", "click", () => this.cancel());
-    on("download", "click", () => this.attempt(this.download()));
+    on("download", "click", () => this.attempt(this.download(this.file)));
+    on("download-paths", "click", () => this.attempt(this.download(this.file.paths)));
     on("continue", "click", () => this.attempt(this.goOn()));
     on("shown", "change", () => this.attempt(this.showResult()));
     on("time", "input", () => this.showTime());
@@ -128,6 +129,7 @@ class Page {
         cells: opened.cellOfTriangle, h: opened.meanEdgeLength || 1, arrays: opened.arrays.map((array) => ({ ...array })) };
       this.result = null;
       this.file = null;
+      this.comparison.view.setPaths([]);
       this.picks.choose(this.model.name);
       Object.assign(this.mesh, measure(this.mesh, this.mesh.kind)); // extent, size, own, view
       this.comparison.view.camera.usual = this.mesh.view;
@@ -207,11 +209,12 @@ class Page {
     }
     if (this.picks.list.length) {
       Object.assign(options, this.picks.inputs(options));
-    } else if (model.name === "distance" && !name) {
+    }
+    if (model.name === "distance" && !name && !options.sources) {
       const point = highest(mesh);
       options.sources = [point];
       notes.push(`The distance is that from the point ${point}, the highest one. Clicks choose others.`);
-    } else if (model.name === "interpolate") {
+    } else if (model.name === "interpolate" && !options.values) {
       const array = arrayNamed(mesh.arrays, name);
       if (array && array.values && array.association === "point" && !array.values.some(Number.isNaN)) {
         options.values = sampled(array);
@@ -273,6 +276,7 @@ class Page {
     const moved = found.coordinates && mesh.points.some((x, i) => x !== found.coordinates[i]);
     this.result = { ...found, model, options, input: options.array || "", points: found.coordinates || mesh.points,
       triangles: found.resultTriangles || mesh.triangles, cells: found.resultCellOfTriangle || mesh.cells };
+    this.comparison.view.setPaths(found.paths.map((path) => path.points));
     this.saveLater();
     const names = found.arrays.map(({ name }) => name);
     $("shown").replaceChildren(...found.arrays.map(({ name }) => makeElement("option", { value: name, textContent: lastPart(name) })),
@@ -286,7 +290,7 @@ class Page {
     this.enable();
     return { arrays: Object.fromEntries(found.arrays.map(({ name, values }) => [name, values])),
       points: found.coordinates, history: found.history, numbers: found.numbers, times: found.times,
-      warnings: found.warnings };
+      paths: found.paths, warnings: found.warnings };
   }
 
   /** The file of the former result is made before the run, in the worker that ends here: it gets 0.8 s. */
@@ -314,12 +318,16 @@ class Page {
     const gz = /\.gz$/i.test(name);
     const stem = dot > 0 ? name.slice(0, dot) : name, ending = dot > 0 ? name.slice(dot) : "";
     const target = gz ? name.replace(/(\.[^.]+)?\.gz$/i, "_result$1") : `${stem}_result${ending}`;
-    this.file = { name: target, bytes: this.client.call("write", target) };
-    this.file.bytes.catch(() => {}); // the download says it
+    const write = (call, written) => {
+      const file = { name: written, bytes: this.client.call(call, written) };
+      file.bytes.catch(() => {}); // the download says it
+      return file;
+    };
+    this.file = write("write", target);
+    if (this.result.paths.length) { this.file.paths = write("writePaths", `${stem}_paths.vtp`); }
   }
 
-  async download() {
-    const { name, bytes } = this.file;
+  async download({ name, bytes }) {
     save(name, new Blob([await bytes], { type: "application/octet-stream" }));
   }
 
@@ -335,8 +343,12 @@ class Page {
   }
 
   showNumbers() {
-    const { numbers, history } = this.result;
-    $("numbers").replaceChildren(...Object.entries(numbers).flatMap(([name, value]) => {
+    const { numbers, history, paths, options } = this.result, unit = $("units").value;
+    $("download-paths").hidden = !paths.length;
+    const lengths = paths.map(({ length, start }) => [makeElement("dt", { textContent: Array.isArray(options.path_points)
+      ? `Path from point ${options.path_points[start]}` : `Path ${start + 1}` }),
+    makeElement("dd", { textContent: `${shortNumber(length)}${unit && ` ${unit}`}` })]);
+    $("numbers").replaceChildren(...lengths.flat(), ...Object.entries(numbers).flatMap(([name, value]) => {
       const list = [value].flat(3).filter((x) => typeof x === "number");
       return list.length && list.length <= 8 ? [makeElement("dt", { textContent: wordsOf(name) }),
         makeElement("dd", { textContent: list.map(shortNumber).join(", ") })] : [];

@@ -95,16 +95,19 @@ uniform float size;
 in vec3 point;
 void main() {
   gl_Position = projection * vec4(point, 1);
-  gl_Position.z -= 0.004 * gl_Position.w;
+  gl_Position.z -= 3e-4 * size * gl_Position.w; // marks before paths
   gl_PointSize = size;
 }`;
+
+const PATH_COLOUR = [0.9, 0.1, 0.5]; // in no map of colours
 
 const MARK_FRAGMENT_SHADER = `#version 300 es
 precision highp float;
 uniform vec3 fill;
+uniform float share; // of the radius, that is filled; the rest is white
 out vec4 result;
 void main() {
   float r = length(gl_PointCoord - 0.5);
   if (r > 0.5) { discard; }
-  result = vec4(r > 0.3 ? vec3(1) : fill, 1);
+  result = vec4(2.0 * r > share ? vec3(1) : fill, 1);
 }`;

@@ -68,6 +68,7 @@ class SurfaceView {
     this.columns = 0; // sides in a row; 0: as many as there is room for
     this.sides = []; // {points, normals, values, ...}: what is seen from left to right
     this.marks = [];
+    this.paths = []; // dots that are so dense that they are lines, in the camera's box
     this.camera = new Camera();
     this.makePrograms();
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
@@ -269,19 +270,36 @@ class SurfaceView {
 
   drawMarks(side, projection, ratio) {
     const gl = this.gl, { program, places } = this.markProgram;
-    if (!this.marks.length) { return; }
+    if (!this.marks.length && !this.paths.length) { return; }
     gl.useProgram(program);
     gl.uniformMatrix4fv(places.projection, false, projection);
-    gl.uniform1f(places.size, 13 * ratio);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.markBuffer);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-    this.marks.forEach(({ point, colour }) => {
-      const p = this.camera.scaled(side.points, 3 * point);
-      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(p), gl.STREAM_DRAW);
+    const drawDots = (dots, colour, size, share) => {
+      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(dots), gl.STREAM_DRAW);
       gl.uniform3fv(places.fill, colour);
-      gl.drawArrays(gl.POINTS, 0, 1);
+      gl.uniform1f(places.size, size * ratio);
+      gl.uniform1f(places.share, share);
+      gl.drawArrays(gl.POINTS, 0, dots.length / 3);
+    };
+    this.paths.forEach((dots) => { drawDots(dots, PATH_COLOUR, 5, 1); });
+    this.marks.forEach(({ point, colour }) => drawDots(this.camera.scaled(side.points, 3 * point), colour, 13, 0.6));
+  }
+
+  /** Paths on the surface: [[x, y, z, ...]]. */
+  setPaths(paths) {
+    const step = 5e-4; // of the largest extent
+    this.paths = paths.map((points) => {
+      const dots = this.camera.scaled(points, 0);
+      for (let i = 3; i < points.length; i += 3) {
+        const to = this.camera.scaled(points, i), from = dots.slice(-3);
+        const count = Math.ceil(Math.hypot(...to.map((x, axis) => x - from[axis])) / step);
+        for (let k = 1; k <= count; ++k) { dots.push(...to.map((x, axis) => from[axis] + k / count * (x - from[axis]))); }
+      }
+      return dots;
     });
+    this.redraw();
   }
 
   /** Marks at points of the surface: [{point, colour}]. */

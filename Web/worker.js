@@ -50,6 +50,7 @@ function surfaceDiffusionWorker(makeEngine) {
       return result;
     },
     write: (engine, name) => own(engine.write(name), engine),
+    writePaths: (engine, name) => own(engine.writePaths(name), engine),
   };
 
   const buffersOf = (value) => {

@@ -59,8 +59,7 @@ measured[chosen[times > -10000]] = times[times > -10000]
 look = dict(view=(-1, -1, 1), up=(0, 0, 1), nan_color="lightgrey")
 show(points, faces, {"measured (ms)": measured, "map": found, "truth": time}, cmap="rainbow_r",
      clim=(0, time.max()), **look)
-show(points, faces, {"standard error (ms)": np.where(far, np.nan, error), "lower end of the band": result.lower,
-                     "upper end": result.upper}, cmap="viridis", **look)
+show(points, faces, {"standard error (ms)": np.where(far, np.nan, error)}, cmap="viridis", **look)
 
 # %%
 # The conduction velocity is the inverse of the slope of the map, with a band from the error of slopes. Where fronts
@@ -74,14 +73,17 @@ print(f"speed {np.median(waves.speed[clear]):.2f} m/s, 0.6 is in {100 * inside[c
 assert abs(np.median(waves.speed[clear]) - 0.6) < 0.05 and inside[clear].mean() > 0.87
 
 # %%
-# Isochrones every 10 ms, and arrows of the velocity where it is determined.
+# Isochrones every 20 ms, white where they may be with the band from `lower` to `upper`, and arrows of the velocity
+# where it is determined.
+may_be = np.floor(result.lower / 20) < np.floor(result.upper / 20)
 mesh = pyvista.PolyData.from_regular_faces(points, faces)
 mesh["time"] = found
 plotter = pyvista.Plotter(shape=(1, 2), window_size=(900, 450), border=False)
-plotter.add_mesh(mesh, scalars="time", cmap="rainbow_r", show_scalar_bar=False)
-plotter.add_mesh(mesh.contour(np.arange(10, found.max(), 10), scalars="time"), color="black", line_width=3,
+plotter.add_mesh(mesh, scalars=np.where(may_be, np.nan, found), cmap="rainbow_r", clim=(0, found.max()),
+                 nan_color="white", show_scalar_bar=False)
+plotter.add_mesh(mesh.contour(np.arange(20, found.max(), 20), scalars="time"), color="black", line_width=3,
                  render_lines_as_tubes=True)
-plotter.add_text("isochrones every 10 ms", font_size=10)
+plotter.add_text("isochrones every 20 ms, bands of 90 %", font_size=10)
 plotter.view_vector(look["view"], look["up"])
 plotter.subplot(0, 1)
 plotter.add_mesh(mesh, scalars=np.where(masked, np.nan, waves.speed), clim=(0.3, 0.9), cmap="viridis",

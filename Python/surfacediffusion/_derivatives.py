@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._functions import SHARED, derivatives
 from ._result import ConductionVelocity, HelmholtzParts, InterpolationResult
-from ._surface import SurfaceLike
+from ._surface import SurfaceLike, as_numbers
 
 __all__ = ["conduction_velocity", "curl", "divergence", "gradient", "helmholtz", "laplacian"]
 
@@ -151,7 +151,7 @@ def laplacian(surface: SurfaceLike, values: ArrayLike, **others: Any) -> NDArray
 
 @_with_arguments
 def conduction_velocity(
-    surface: SurfaceLike, times: ArrayLike, *, error: InterpolationResult | None = None, **others: Any
+    surface: SurfaceLike, times: ArrayLike, *, error: InterpolationResult | ArrayLike | None = None, **others: Any
 ) -> ConductionVelocity:
     """Compute the velocity of a wave on a surface from its arrival times T: grad T/|grad T|^2.
 
@@ -168,8 +168,9 @@ def conduction_velocity(
     smoothing_fwhm : float, default 0
         The width, in the unit of the coordinates, of the Gaussian that smooths the times first:
         several edges for times with noise. Linear functions on planes stay as they are.
-    error : InterpolationResult, optional
-        The result of :func:`interpolate` with ``compute_error=True`` that the times are of. It gives the band
+    error : InterpolationResult or array_like of the shape of the times, optional
+        The result of :func:`interpolate` with ``compute_error=True`` that the times are of, or its
+        `slope_error` alone. It gives the band
         of the speed, 1/(abs(grad T) +- 1.645 e) with the standard error e of slopes. Not with
         `smoothing_fwhm` or `result_on_faces`.
     {others}
@@ -211,7 +212,9 @@ def conduction_velocity(
 
 
 def _slope_error_of(error: Any) -> NDArray[np.float64]:
-    if not isinstance(error, InterpolationResult) or error.slope_error.size == 0:
+    if not isinstance(error, InterpolationResult):
+        return as_numbers("error", error)
+    if error.slope_error.size == 0:
         raise ValueError("error has no errors of slopes; allowed: the result of interpolate() with "
                          "compute_error=True and without exact=True")
     return error.slope_error

@@ -1006,7 +1006,7 @@ def derivatives(
     given = Input(surface, data, data_on_faces=on_faces, mask=left_out(mask, roi, surface))
     if slope_error is not None:
         allowed = (surface.n_points, *np.shape(values)[1:])
-        require_shape("error.slope_error", slope_error, slope_error.shape == allowed,
+        require_shape("error", slope_error, slope_error.shape == allowed,
                       f"{allowed}, one per point and column of {name}")
         given.core.set("slope_errors", np.ascontiguousarray(slope_error, dtype=np.float64))
     words = {**ARRAYS, "InputArray": name, "SlopeErrorArray": "error"}

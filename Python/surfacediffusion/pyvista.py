@@ -183,7 +183,8 @@ def interpolate(
     with NaN where nothing is known; points: a data set whose points have the values, which count at
     the nearest points of the mesh; fidelity: array of weights of the values, such as 1/s^2, in the same
     place. The equation and all other keywords are described in help(surfacediffusion.interpolate). The
-    results are the arrays <array>Interpolated (active) and, with compute_error=True, <array>Error.
+    results are the arrays <array>Interpolated (active) and, with compute_error=True, <array>Error and
+    <array>SlopeError.
     Each block of a MultiBlock takes all points. return_result: if True, the function returns a pair: the
     mesh, and the InterpolationResult, of a MultiBlock the list of them.
     """
@@ -454,15 +455,17 @@ def _add_columns(
 
 def derivatives(
     mesh: Any, array: str | None = None, *, mask: str | None = None, roi: str | None = None,
-    return_result: bool = False, progress: Progress = False, **properties: Any,
+    error: str | None = None, return_result: bool = False, progress: Progress = False, **properties: Any,
 ) -> Any:
     """Compute derivatives of data on the mesh.
 
     array: point or cell array; default: the active scalars. Blocks without it pass through, if others
     have it. mask, roi: point or cell array; points and cells with a nonzero value, or with 0, are left
-    out. All other keywords are those of surfacediffusion.derivatives. The result has the name of the array followed
+    out. error: point array of the standard errors of slopes of times, tSlopeError of interpolate() with
+    compute_error=True, for quantity="ConductionVelocity". All other keywords are those of
+    surfacediffusion.derivatives. The result has the name of the array followed
     by the quantity, for instance tGradient, or result_array_name; velocities have their lengths in
-    tSpeed. return_result: if True, the function returns a pair: the mesh, and the DerivativesResult, of
+    tSpeed, and with error the bounds of a band that holds 90 % of them in tSpeedLower and tSpeedUpper. return_result: if True, the function returns a pair: the mesh, and the DerivativesResult, of
     a MultiBlock the list of them.
     """
     def has(leaf: Any) -> bool:
@@ -471,7 +474,8 @@ def derivatives(
     def read(block: _Block) -> dict[str, Any] | None:
         if not has(block.origin) and any(map(has, _find_polydata(mesh))):
             return None
-        return {"values": block.find_data(array), **block.find_all(mask=mask, roi=roi)}
+        return {"values": block.find_data(array), **block.find_all(mask=mask, roi=roi),
+                "_slope_error": block.find("error", error, faces=False)}
 
     return _on_each("derivatives", mesh, read, return_result, progress, properties)
 

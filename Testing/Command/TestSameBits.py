@@ -90,6 +90,9 @@ class SameBits(unittest.TestCase):
         inside = np.where(outside[:, None], 0, values)
         one, two = values.T
         curved = sd.curvature(s, fwhm=4.0)
+        fit = sd.interpolate(s, sparse, compute_error=True)
+        np.save("u.npy", fit.values)
+        wave = sd.conduction_velocity(s, fit.values, error=fit.slope_error.astype(np.float32))
         texture = dict(feature_size=8.0, seed=1, number_of_time_steps=5, refine_to=0)
         fine = sd.refine(s, 1.5)
         Path("b.off").write_text(off_text(*sphere(2, 30.0)))
@@ -129,6 +132,9 @@ class SameBits(unittest.TestCase):
             ("derivatives a.off vectors.npy out.npy --quantity curl", sd.curl(s, columns(-y, x, z))),
             ("derivatives a.off v.npy out.npy --quantity velocity --fwhm 3",
              columns(*sd.conduction_velocity(s, values, smoothing_fwhm=3))),
+            ("interpolate a.off few.npy out.npy --slope-error slopes.npy", sd.interpolate(s, sparse)),
+            ("derivatives a.off u.npy out.npy --quantity velocity --error slopes.npy",
+             columns(*wave, wave.speed_lower, wave.speed_upper)),
             ("distance a.off out.npy --from 5 --from 9 --speed speed.npy",
              sd.distance(s, [5, 9], speed=speed)),
             *((f"distance a.off marks.npy out.npy --method {method}",

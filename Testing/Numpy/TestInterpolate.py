@@ -234,7 +234,7 @@ class Boundary(unittest.TestCase):
             sd.conduction_velocity(plane, result.values, error=result, smoothing_fwhm=8.0)
         with self.assertRaisesRegex(ValueError, "result_on_faces is True; allowed: False together with error"):
             sd.conduction_velocity(plane, result.values, error=result, result_on_faces=True)
-        with self.assertRaisesRegex(ValueError, r"error.slope_error has shape .*; allowed: \(\d+, 2\)"):
+        with self.assertRaisesRegex(ValueError, r"error has shape .*; allowed: \(\d+, 2\)"):
             sd.conduction_velocity(plane, np.c_[result.values, result.values], error=result)
         # The rule as numpy computes it.
         slow, half = 1.0 / found.speed, 1.645 * result.slope_error

@@ -73,17 +73,21 @@ class ImportLines(unittest.TestCase):
         table = {"pt number:": np.arange(40), "utilized:": 1 - UNKNOWN, "surfPt x:": PLACES[:, 0],
                  "surfPt y:": PLACES[:, 1], "surfPt z:": PLACES[:, 2],
                  "rov LAT:": 1.5 + TIMES / 1000, "ref LAT:": np.full(40, 1.5)}
-        lines = ["St. Jude Medical. File Revision : 5.2.2", "Export from Study : x,", "Begin data"]
-        lines += [",".join([name, *(f"{value:.7g}" for value in row)]) + "," for name, row in table.items()]
-        Path("DxL_1.csv").write_text("\n".join(lines))
-        self.assert_values(self.run_block("DxL_1.csv"), (POINTS, FACES))
+        for number, part in enumerate((slice(25), slice(25, 40)), 1):
+            lines = ["St. Jude Medical. File Revision : 5.2.2", "Export from Study : x,", "Begin data"]
+            lines += [",".join([name, *(f"{value:.7g}" for value in row[part])]) + "," for name, row in table.items()]
+            Path(f"DxL_{number}.csv").write_text("\n".join(lines))
+        found = self.run_block("DxL_*.csv")
+        order = np.argsort(found["places"][:, 2])  # files come in any order
+        self.assert_values({"places": found["places"][order], "times": found["times"][order]}, (POINTS, FACES))
 
     def test_openep(self):
-        marks = np.where(UNKNOWN, np.nan, 2 * TIMES + 500)
+        marks = np.where(UNKNOWN, 5000.0, 2 * TIMES + 500)  # outside of the window of interest
         savemat("openep.mat", {"userdata": {
             "surface": {"triRep": {"X": POINTS, "Triangulation": FACES + 1.0}, "act_bip": np.c_[POINTS[:, 2], POINTS[:, 0]]},
             "electric": {"egmSurfX": PLACES, "sampleFrequency": 2000.0,
-                         "annotations": {"mapAnnot": marks, "referenceAnnot": np.full(40, 500.0)}}}})
+                         "annotations": {"mapAnnot": marks, "referenceAnnot": np.full(40, 500.0),
+                                         "woi": np.tile([-300.0, 300.0], (40, 1))}}}})
         found = self.run_block("openep.mat")
         self.assert_map(found)
         np.testing.assert_array_equal(found["activation"], POINTS[:, 2])

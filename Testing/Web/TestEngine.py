@@ -17,7 +17,7 @@ import numpy as np
 import pyvista
 import surfacediffusion.pyvista as functions
 from engine import Engine, EngineError
-from surfacediffusion import sphere
+from surfacediffusion import geodesic_path, sphere
 from surfacediffusion.files import read_data, read_surface
 
 SCRIPT = sys.argv.pop()
@@ -61,6 +61,7 @@ CASES = [
     ("denoise_mesh", None, {"fixed": "fixed"}, 1e-6),
     ("derivatives", "smooth", {}, 1e-9),
     ("derivatives", "vectors", {"quantity": "divergence"}, 1e-9),
+    ("derivatives", "smooth", {"quantity": "conduction_velocity", "error": "factors"}, 1e-9),
     ("direction_field", None, {}, 1e-6),
     ("distance", "marks", {}, 1e-9),
     ("distance", "marks", {"method": "heat"}, 1e-9),
@@ -158,6 +159,16 @@ class Models(EngineTest):
         chosen = self.engine.call("resultArray", "Distance")
         self.engine.run("distance", array="marks")
         np.testing.assert_allclose(chosen, self.engine.call("resultArray", "Distance"), atol=1e-12)
+        paths = self.engine.run("distance", sources=[500], path_points=[80, 3])["paths"]
+        written = read_vtp(self.engine.call("writePaths", "p.vtp").tobytes())
+        for row, start in enumerate((80, 3)):
+            expected = geodesic_path((self.mesh.points, self.mesh.regular_faces), start, 500)
+            self.assertEqual(paths[row]["start"], row)
+            self.assertAlmostEqual(paths[row]["length"], expected.length, delta=1e-9)
+            np.testing.assert_allclose(np.reshape(paths[row]["points"], (-1, 3)), expected.points, atol=1e-9)
+            np.testing.assert_allclose(written.get_cell(row).points, expected.points, atol=1e-9)
+        np.testing.assert_array_equal(written["Length"], [path["length"] for path in paths])
+        self.assertEqual(self.engine.run("distance", sources=[500])["paths"], [])
         self.engine.run("segment", array="noisy", seeds={"points": [3, 500], "values": [1, 2]})
         rows = [3, 9, 80, 400]
         found = self.engine.run("interpolate", values={"points": rows, "values": [1.0, 2.0, 3.0, 4.0]}, exact=True)
@@ -186,6 +197,8 @@ class Models(EngineTest):
                 ("heat", {"array": "noisy", "speeds": 1}, "no setting or input speeds"),
                 ("heat", {}, "allowed"), ("cool", {}, "there is no model cool"),
                 ("distance", {"sources": [10000000]}, "allowed: 0 to"),
+                ("distance", {"sources": [3], "path_points": "of_cells"}, "allowed: one of points"),
+                ("derivatives", {"array": "smooth", "error": "of_cells"}, "allowed: one of points"),
                 ("curvature", {"refine_to": -1.0}, "RefineTo is -1; allowed: "),
                 ("distance", {"sources": []}, "")]:
             with self.subTest(model=model, **given), self.assertRaises(EngineError) as raised:
@@ -202,6 +215,13 @@ class Models(EngineTest):
         with self.assertRaisesRegex(EngineError, "aborted"):
             self.engine.call("cancel", "turing_texture", "{}")
         self.engine.run("curvature")  # it lives
+
+
+def read_vtp(data):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "a.vtp"
+        path.write_bytes(data)
+        return pyvista.read(path)
 
 
 def bytes_of(mesh, name, **options):

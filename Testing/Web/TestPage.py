@@ -289,6 +289,40 @@ class TestPage(unittest.TestCase):
         wait_for(lambda: "Point " in self.one("pick-list").text, "a source")
         self.apply()
         self.assertTrue(self.one("lines").is_selected())  # distances have isolines
+        self.assertFalse(self.one("download-paths").is_displayed())
+
+    def test_a_shortest_path_is_drawn_measured_and_saved(self):
+        self.choose("model", "distance")
+        self.choose("units", "mm")
+        canvas = self.one("view")
+
+        def click(x, y, found):
+            ActionChains(self.browser, duration=0).move_to_element_with_offset(canvas, x, y).click().perform()
+            entries = wait_for(lambda: self.browser.find_elements(By.CSS_SELECTOR, "#pick-list li")[found:], "a point")
+            return int(entries[0].text.split()[1].rstrip(":"))
+
+        source = click(-60, 20, 0)
+        self.choose("pick-role", "path_points")
+        start = click(90, -30, 1)
+        self.assertIn("start of a path", self.one("pick-list").text)
+        self.apply()
+        length = sd.geodesic_path(self.surface, start, source).length
+        numbers = self.one("numbers").text.split("\n")
+        self.assertEqual(numbers[0], f"Path from point {start}")
+        self.assertRegex(numbers[1], r"^[\d.]+ mm$")
+        self.assertAlmostEqual(float(numbers[1].split()[0]), length, delta=0.01 * length)
+        self.choose("shown", "")
+
+        def pink():
+            return [int((half.astype(int) @ [1, -1, 0] > 120).sum()) for half in self.halves()]
+
+        drawn = wait_for(lambda: pink() if min(pink()) > 300 else None, "the line on both sides")
+        self.browser.execute_script("page.comparison.view.setPaths([])")
+        wait_for(lambda: max(pink()) < 0.5 * min(drawn), "views without the line")
+        self.one("download-paths").click()
+        path = self.folder / "pebble_paths.vtp"
+        wait_for(path.exists, "the download", 30)
+        self.assertIn('NumberOfLines="1"', path.read_text())
 
     def test_steps_and_energy_are_seen_and_the_view_is_saved(self):
         self.choose("model", "intrinsic_tv")

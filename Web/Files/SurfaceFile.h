@@ -44,6 +44,7 @@ struct SurfaceFile
   std::vector<double> Points = {}; ///< three coordinates each
   std::vector<std::int64_t> Corners = {}; ///< of all cells
   std::vector<std::size_t> Begin = { 0 }; ///< per cell the first of its corners; the end of all
+  bool AreLines = false; ///< cells are lines, which .vtp alone is written with
   std::vector<FileArray> Arrays = {};
   std::vector<std::int64_t> At = {}; ///< the points that arrays have a row of; empty: all
   std::string Unit = {}; ///< of the coordinates; empty: the file does not say

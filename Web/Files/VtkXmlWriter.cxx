@@ -57,16 +57,17 @@ Bytes WriteVtkXml(const SurfaceFile& surface, bool isGrid)
 {
   const std::string cells = std::to_string(surface.NumberOfCells());
   const std::string type = isGrid ? "UnstructuredGrid" : "PolyData";
+  const std::string kind = isGrid ? "Cells" : surface.AreLines ? "Lines" : "Polys";
   Writer writer;
   writer.Text("<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type +
     "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<" + type +
-    ">\n<Piece NumberOfPoints=\"" + std::to_string(surface.NumberOfPoints()) + "\" " +
-    (isGrid ? "NumberOfCells=\"" : "NumberOfPolys=\"") + cells + "\">\n");
+    ">\n<Piece NumberOfPoints=\"" + std::to_string(surface.NumberOfPoints()) + "\" " + "NumberOf" +
+    kind + "=\"" + cells + "\">\n");
   WriteArrays(writer, surface, false);
   WriteArrays(writer, surface, true);
   writer.Text("<Points>\n");
   WriteArray<double>(writer, "Name=\"Points\" NumberOfComponents=\"3\"", "Float64", surface.Points);
-  writer.Text(isGrid ? "</Points>\n<Cells>\n" : "</Points>\n<Polys>\n");
+  writer.Text("</Points>\n<" + kind + ">\n");
   WriteArray<std::int64_t>(writer, "Name=\"connectivity\"", "Int64", surface.Corners);
   WriteArray<std::int64_t>(writer, "Name=\"offsets\"", "Int64",
     std::vector<std::size_t>(surface.Begin.begin() + 1, surface.Begin.end()));
@@ -79,8 +80,7 @@ Bytes WriteVtkXml(const SurfaceFile& surface, bool isGrid)
     }
     WriteArray<std::uint8_t>(writer, "Name=\"types\"", "UInt8", types);
   }
-  writer.Text(
-    std::string(isGrid ? "</Cells>" : "</Polys>") + "\n</Piece>\n</" + type + ">\n</VTKFile>\n");
+  writer.Text("</" + kind + ">\n</Piece>\n</" + type + ">\n</VTKFile>\n");
   return writer.Written;
 }
 

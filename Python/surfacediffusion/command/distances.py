@@ -180,29 +180,40 @@ def add_derivatives(commands):
         "Compute the gradient or the Laplacian of data on a surface, the divergence or curl of "
         "vectors, or the conduction velocity of a wave from its arrival times.",
         ["lh.white lh.thickness gradient.shape.gii --fwhm 5",
-         "atrium.vtp times.npy velocity.vtp --quantity velocity --fwhm 8"], common.NEW)
+         "atrium.vtp times.npy velocity.vtp --quantity velocity --fwhm 8",
+         "atrium.vtp times.npy velocity.vtp --quantity velocity --error slopes.npy"], common.NEW)
     common.mesh(parser)
     parser.add_argument("data", metavar="DATA", help="data at its vertices; missing ones are NaN")
-    common.output(parser, "columns x, y, z of each gradient or velocity, with the speed after that; "
-                          "or one column for each column or vector of DATA")
+    common.output(parser, "columns x, y, z of each gradient or velocity, with the speed after that, and the "
+                          "bounds of its band with --error; or one column for each column or vector of DATA")
     parser.add_argument("--quantity", default="gradient",
                         choices=("gradient", "divergence", "curl", "laplacian", "velocity"),
                         help="what to compute (default: gradient); velocity: grad T/|grad T|^2")
+    parser.add_argument("--error", metavar="FILE",
+                        help="the standard errors of the slopes of times, of interpolate --slope-error, for "
+                             "velocity: the bounds of a band that holds 90 %% of the speeds are columns, too")
     common.any_hemisphere(parser)
     common.fwhm(parser, " that smooths DATA first", "0")
     common.merge(parser)
 
 
 def derivatives(arguments, report):
+    if arguments.quantity != "velocity":
+        inputs.refuse(arguments, ["--error"], f"with --quantity {arguments.quantity}", "--quantity velocity")
     surface = read_surface_for_output(arguments, report, lengths=True)
+    error = None
     with report.timed("read"):
         _, data, names = inputs.read_values(arguments.data, surface, tables=False)
+        if arguments.error is not None:
+            error = inputs.read_values(arguments.error, surface, tables=False)[1]
     word = arguments.quantity.capitalize()
     options = {"on_faces": False, "smoothing_fwhm": arguments.fwhm, **common.merging(arguments)}
     with report.working(word) as progress:
         solver = surface.solver
         if arguments.quantity == "velocity":
-            result = np.column_stack(conduction_velocity(solver, data, progress=progress, **options))
+            found = conduction_velocity(solver, data, error=error, progress=progress, **options)
+            bands = () if error is None else (found.speed_lower, found.speed_upper)
+            result = np.column_stack((*found, *bands))
         else:
             result = derive(solver, data, quantity=word, progress=progress, **options)
     if arguments.quantity in ("gradient", "velocity"):
@@ -212,7 +223,8 @@ def derivatives(arguments, report):
     else:
         columns = list(names[::3])
     if arguments.quantity == "velocity":
-        columns += [f"{name} speed" for name in names]
+        columns += [f"{name} speed{bound}" for bound in ("", *(() if error is None else (" lower", " upper")))
+                    for name in names]
     report.facts.update(quantity=arguments.quantity, fwhm=arguments.fwhm)
     target = new_data(surface, arguments.output, columns)
     write_new(arguments, report, target, result.reshape(len(surface.points), -1))

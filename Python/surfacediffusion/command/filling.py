@@ -90,13 +90,18 @@ def add_interpolate(commands):
     parser.add_argument("--error", metavar="FILE",
                         help="write the standard error of the map, which is large where nothing was "
                              "measured, in one of the formats of OUTPUT")
+    parser.add_argument("--slope-error", metavar="FILE",
+                        help="write the standard error of its slopes, which derivatives --error takes")
     common.merge(parser)
 
 
 def interpolate(arguments, report):
     surface = read_surface_for_output(arguments, report, lengths=True)
-    if arguments.error is not None:
-        check_output_folder(arguments.error)
+    if arguments.exact:
+        inputs.refuse(arguments, ["--slope-error"], "with --exact", "without it")
+    for path in (arguments.error, arguments.slope_error):
+        if path is not None:
+            check_output_folder(path)
     with report.timed("read"):
         places, measured, names = inputs.read_values(arguments.values, surface)
     if places is None:
@@ -105,14 +110,14 @@ def interpolate(arguments, report):
     else:
         places = inputs.to_surface(arguments, surface, places, report)
     target = new_data(surface, arguments.output, names)
-    errors = new_data(surface, arguments.error, names) if arguments.error else None
+    errors = {path: new_data(surface, path, names) for path in (arguments.error, arguments.slope_error) if path}
     with report.working("Interpolation") as progress:
         result = fit(
             surface.solver, measured, places, exact=arguments.exact, noise_level=arguments.noise or 0.0,
             correlation_length=arguments.length or 0.0, boundary="Natural" if arguments.flat else "Automatic",
             keep_range=arguments.keep_range, maximum_distance=arguments.within or 0.0,
             missing_value=arguments.missing_value,
-            compute_error=errors is not None, robust=arguments.robust, progress=progress,
+            compute_error=bool(errors), robust=arguments.robust, progress=progress,
             **given(smoothing=arguments.smoothing), **common.merging(arguments))
     is_tkr = places is not None and arguments.ras == "tkr" and surface.center.any()
     if is_tkr and result.median_distance > result.mean_edge_length:
@@ -130,7 +135,8 @@ def interpolate(arguments, report):
         report.facts["outliers"] = np.flatnonzero(outliers.any(axis=1)).tolist()
     with report.timed("write"):
         target.save(arguments.output, [result.values.astype(np.float32)])
-        if errors is not None:
-            errors.save(arguments.error, [result.error.astype(np.float32)])
+        for path, error in ((arguments.error, result.error), (arguments.slope_error, result.slope_error)):
+            if path:
+                errors[path].save(path, [error.astype(np.float32)])
     report.say_written(arguments.output, f"{result.number_of_values} values, misfit "
                        + ", ".join(f"{misfit:.4g}" for misfit in result.misfit))
