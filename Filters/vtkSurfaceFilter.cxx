@@ -129,6 +129,11 @@ Settings& vtkSurfaceFilter::GetSettings() const
   return this->Private->Properties.Get();
 }
 
+void vtkSurfaceFilter::SetFewestBlocksOnThreads(int blocks)
+{
+  SMPParallelFor::Few = blocks;
+}
+
 template <typename T>
 void vtkSurfaceFilter::WriteProperty(const char* name, T value)
 {

@@ -250,6 +250,9 @@ protected:
   /// The settings, which have the values of the properties.
   SurfaceDiffusion::Settings& GetSettings() const;
 
+  /// For tests: loops over fewer blocks of 2048 rows (default: 24) run on one thread.
+  static void SetFewestBlocksOnThreads(int blocks);
+
   ///@{
   /// The bodies of setters and getters, for double, int and bool. A name that no setting of this
   /// type has is an error.

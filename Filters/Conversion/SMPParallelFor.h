@@ -23,8 +23,9 @@ namespace SurfaceDiffusion
 class SMPParallelFor : public ParallelFor
 {
 public:
-  /// The std::thread back end starts new threads for every loop: shorter loops are faster on one.
-  static constexpr Index Few = 24;
+  /// The std::thread back end starts new threads for every loop: shorter loops are faster on one. Tests
+  /// lower it.
+  static inline std::atomic<Index> Few = 24;
 
   /// The threads of the loops that one thread starts.
   struct Team
@@ -57,7 +58,7 @@ public:
   {
     LoopWatch* const watch = LoopWatch::OfThisThread();
     const bool isOwn = HasOwnThreads();
-    if (count < (isOwn ? ThreadPool::Few : Few))
+    if (count < (isOwn ? ThreadPool::Few : Few.load(std::memory_order_relaxed)))
     {
       body(0, count);
     }

@@ -39,14 +39,12 @@ constexpr bool IsSanitized = true; // which takes 10 to 60 times as long
 constexpr bool IsSanitized = false;
 #endif
 
-/// A surface of n x n points. With the default, it is large enough for loops over its points to run
-/// on several threads; with 160, for those over its triangles.
+/// A surface of n x n points. With the default, it is large enough for loops over its points to run on
+/// several threads.
 vtkSmartPointer<vtkPolyData> Hills(int n = 224)
 {
   auto hills = Grid(n, n);
   vtkPoints* points = hills->GetPoints();
-  const vtkIdType rows = n == 224 ? hills->GetNumberOfPoints() : hills->GetNumberOfCells();
-  EXPECT_TRUE(n < 160 || rows >= vtkIdType(SurfaceDiffusion::SMPParallelFor::Few) * BlockSize);
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
   {
     double x[3];
@@ -58,6 +56,14 @@ vtkSmartPointer<vtkPolyData> Hills(int n = 224)
   return hills;
 }
 
+/// Whether all loops over more than one block run on several threads.
+struct ThreadsForAll : vtkSurfaceFilter
+{
+  ThreadsForAll() = delete;
+  static void Set(bool all) { SetFewestBlocksOnThreads(all ? 2 : Usual); }
+  static constexpr int Usual = 24;
+};
+
 class AnyThreads : public testing::TestWithParam<FilterKind>
 {
 protected:
@@ -65,6 +71,7 @@ protected:
   {
     vtkSMPTools::SetBackend(this->Before.c_str());
     vtkSMPTools::Initialize(0);
+    ThreadsForAll::Set(false);
   }
 
   /// The result on a copy of the surface, with at most this number of threads; 0: all.
@@ -87,9 +94,10 @@ protected:
 TEST_P(AnyThreads, DoNotChangeABit)
 {
   const FilterKind& kind = this->GetParam();
-  const bool isInterpolation = std::string(kind.Name).rfind("Interpolation", 0) == 0; // the slowest
-  const int slow = isInterpolation ? 12 : 160;
-  const vtkSmartPointer<vtkPolyData> surface = Hills(kind.IsSlow ? slow : 224);
+  ThreadsForAll::Set(true);
+  const vtkSmartPointer<vtkPolyData> surface =
+    Hills(kind.IsSlow ? 48 : 96); // 2 and 5 blocks of points
+  EXPECT_GE(surface->GetNumberOfPoints(), BlockSize + 1);
   if (IsSanitized) // one run has all the accesses that may race, and the others would take hours
   {
     vtkSMPTools::SetBackend("STDThread");
