@@ -18,6 +18,6 @@ def value_of(name, text):
 
 def kinds_of_run():
     with open(os.path.splitext(os.path.abspath(__file__))[0] + ".txt", encoding="utf-8") as file:
-        lines = [line.split() for line in file if line.strip() and not line.startswith("#")]
+        lines = [line.split() for line in file if line.strip() and not line.startswith(("#", "model "))]
     return [(name, class_name, {key: value_of(key, text) for key, _, text in (
         word.partition("=") for word in words) if text}) for name, class_name, _, *words in lines]

@@ -11,11 +11,13 @@
 #include "Run/TextureSettings.h"
 #include "Run/TotalVariationSettings.h"
 
+#include <algorithm>
+#include <fstream>
 #include <functional>
 #include <memory>
+#include <sstream>
+#include <stdexcept>
 #include <string>
-#include <tuple>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -45,7 +47,7 @@ enum class Exemption
   Allocation ///< one solver is used for different systems in turn
 };
 
-/// A model with settings that take a way of their own through its code.
+/// A model with settings that take a way of their own through its code: a line of kinds_of_run.txt.
 struct ModelKind
 {
   std::string Name;
@@ -71,9 +73,59 @@ inline void PrintTo(const ModelKind& kind, std::ostream* os)
   *os << kind.Name;
 }
 
+/// The words of Content and Exemption in kinds_of_run.txt, in their order.
+constexpr const char* ContentWords[] = { "Scalars", "Colors", "UnitVectors", "Nothing",
+  "ScalarsOnCells", "ColorsOnCells", "UnitVectorsOnCells" };
+constexpr const char* ExemptionWords[] = { "None", "Numbering", "Energy", "Allocation" };
+
+/// Sets one setting to a number or a word.
+class TextSetter : public SettingVisitor
+{
+public:
+  using SettingVisitor::Choice;
+  TextSetter(std::string name, std::string value)
+    : Name(std::move(name))
+    , Value(std::move(value))
+  {
+  }
+  void Number(const SettingInfo& info, double& value, const SettingRange&) override
+  {
+    this->Set(info, value);
+  }
+  void Integer(const SettingInfo& info, int& value, const SettingRange&) override
+  {
+    this->Set(info, value);
+  }
+  void Switch(const SettingInfo& info, bool& value) override { this->Set(info, value); }
+  void Choice(const SettingInfo& info, int& value, const std::vector<const char*>& words,
+    const std::vector<bool>&) override
+  {
+    if (info.Name == this->Name)
+    {
+      value = static_cast<int>(std::find(words.begin(), words.end(), this->Value) - words.begin());
+      this->IsDone = value < static_cast<int>(words.size());
+    }
+  }
+
+  bool IsDone = false;
+
+private:
+  template <typename T>
+  void Set(const SettingInfo& info, T& value)
+  {
+    if (info.Name == this->Name)
+    {
+      value = static_cast<T>(std::stod(this->Value));
+      this->IsDone = true;
+    }
+  }
+
+  const std::string Name, Value;
+};
+
+/// Settings of a class that remember the model that is made with them.
 template <typename ModelSettings>
-ModelKind MakeKind(std::string name, int steps, std::function<void(ModelSettings&)> set = {},
-  Content data = Content::Scalars, Exemption from = Exemption::None)
+std::shared_ptr<RunSettings> MakeWatched(Model** made)
 {
   struct Watched : ModelSettings
   {
@@ -88,305 +140,85 @@ ModelKind MakeKind(std::string name, int steps, std::function<void(ModelSettings
       return model;
     }
   };
-  return { std::move(name),
-    [=, set = std::move(set)](Model** made) -> std::shared_ptr<RunSettings>
+  auto settings = std::make_shared<Watched>();
+  settings->Made = made;
+  return settings;
+}
+
+constexpr std::pair<const char*, std::shared_ptr<RunSettings> (*)(Model**)> SettingsOfModels[] = {
+  { "Heat", MakeWatched<HeatSettings> },
+  { "TotalVariation", MakeWatched<TotalVariationSettings> },
+  { "HarmonicMap", MakeWatched<HarmonicMapSettings> },
+  { "MumfordShah", MakeWatched<MumfordShahSettings> },
+  { "TensorDiffusion", MakeWatched<TensorDiffusionSettings> },
+  { "Texture", MakeWatched<TextureSettings> },
+  { "Segmentation", MakeWatched<SegmentationSettings> },
+  { "Interpolation", MakeWatched<InterpolationSettings> },
+};
+
+/// The kind of a line, behind its first word.
+inline ModelKind ReadModelKind(std::istream& words)
+{
+  ModelKind kind;
+  std::string className, content;
+  std::vector<std::pair<std::string, std::string>> values;
+  words >> kind.Name >> className >> content;
+  kind.Data = static_cast<Content>(
+    std::find(std::begin(ContentWords), std::end(ContentWords), content) - ContentWords);
+  for (std::string word; words >> word;)
+  {
+    const std::size_t sign = word.find('=');
+    if (sign != std::string::npos)
     {
-      auto settings = std::make_shared<Watched>();
-      if constexpr (std::is_base_of_v<TimeSettings, ModelSettings>)
+      values.emplace_back(word.substr(0, sign), word.substr(sign + 1));
+      continue;
+    }
+    kind.From = static_cast<Exemption>(
+      std::find(std::begin(ExemptionWords), std::end(ExemptionWords), word) - ExemptionWords);
+  }
+  const auto* const made = std::find_if(std::begin(SettingsOfModels), std::end(SettingsOfModels),
+    [&](const auto& entry) { return entry.first == className; });
+  if (made == std::end(SettingsOfModels) || kind.Data > Content::UnitVectorsOnCells ||
+    kind.From > Exemption::Allocation)
+  {
+    throw std::invalid_argument("kinds_of_run.txt has an unknown word for " + kind.Name);
+  }
+  kind.Make = [values, make = made->second](Model** model)
+  {
+    auto settings = make(model);
+    for (const auto& [name, value] : values)
+    {
+      TextSetter setter(name, value);
+      settings->Visit(setter);
+      if (!setter.IsDone)
       {
-        settings->NumberOfTimeSteps = steps;
+        throw std::invalid_argument("there is no setting " + name + " or no value " + value);
       }
-      if constexpr (std::is_same_v<TotalVariationSettings, ModelSettings>)
-      {
-        settings->AutomaticFidelity = false; // some kinds turn it on, which takes longer
-      }
-      if (set)
-      {
-        set(*settings);
-      }
-      settings->Made = made;
-      return settings;
-    },
-    data, from };
+    }
+    return settings;
+  };
+  return kind;
 }
 
 /// Every model, with every scheme and every discretisation that it has.
-inline std::vector<ModelKind> AllModelKinds()
+inline const std::vector<ModelKind>& AllModelKinds()
 {
-  using Heat = HeatSettings;
-  using TV = TotalVariationSettings;
-  using Harmonic = HarmonicMapSettings;
-  using Shah = MumfordShahSettings;
-  using Tensor = TensorDiffusionSettings;
-  using Texture = TextureSettings;
-  using Segments = SegmentationSettings;
-  using Spline = InterpolationSettings;
-  const auto setImplicit = [](TV& s)
-  { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Implicit; };
-  const auto setSteady = [](TV& s)
+  static const std::vector<ModelKind> all = []
   {
-    s.Mode = TotalVariationMode::SteadyState;
-    s.StopTolerance = 1e-2;
-  };
-  std::vector<ModelKind> kinds = {
-    MakeKind<Heat>("Heat", 3),
-    MakeKind<Heat>("HeatColors", 3, {}, Content::Colors),
-    MakeKind<Heat>("HeatOnCells", 4, {}, Content::ColorsOnCells),
-    MakeKind<Heat>("HeatFirstOrder", 3,
-      [](Heat& s)
-      {
-        s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder;
-        s.FidelityWeight = 0.5;
-      }),
-    MakeKind<Heat>("HeatExponential", 2,
-      [](Heat& s)
-      {
-        s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential;
-        s.MassMatrix = SurfaceDiffusion::MassMatrix::Mixed;
-        s.FidelityWeight = 0.5;
-      }),
-    MakeKind<Heat>(
-      "HeatExponentialOnCells", 2,
-      [](Heat& s) { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential; },
-      Content::ColorsOnCells),
-    MakeKind<Heat>("HeatPeriodic", 2, [](Heat& s) { s.Period = 1.5; }),
-    MakeKind<Heat>(
-      "HeatTangent", 3, [](Heat& s) { s.Vectors.Type = VectorType::Tangent; }, Content::UnitVectors,
-      Exemption::Numbering),
-    MakeKind<Heat>(
-      "HeatTangentOnCells", 2,
-      [](Heat& s)
-      {
-        s.Vectors = { VectorType::Tangent, VectorLaplacian::Viscous, NormalPart::Keep };
-        s.FidelityWeight = 0.5;
-      },
-      Content::UnitVectorsOnCells, Exemption::Numbering),
-    MakeKind<Heat>(
-      "HeatTangentDiffuse", 2,
-      [](Heat& s)
-      {
-        s.Vectors = { VectorType::Tangent, VectorLaplacian::Hodge, NormalPart::Diffuse };
-        s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::Exponential;
-        s.MassMatrix = SurfaceDiffusion::MassMatrix::Mixed;
-      },
-      Content::UnitVectors, Exemption::Numbering),
-    MakeKind<Heat>("HeatDirected", 2,
-      [](Heat& s)
-      {
-        s.AcrossDiffusivity = 0.2;
-        s.FidelityWeight = 0.5;
-      }),
-    MakeKind<Heat>("HeatMultigrid", 2, [](Heat& s) { s.Solver = SolverMethod::Multigrid; }),
-    MakeKind<Heat>("HeatDirect", 2, [](Heat& s) { s.Solver = SolverMethod::Direct; }),
-    MakeKind<Heat>("HeatDelaunay", 1, [](Heat& s) { s.IntrinsicDelaunay = true; }),
-    MakeKind<Heat>("HeatSteadyState", 1,
-      [](Heat& s)
-      {
-        s.Mode = HeatMode::SteadyState;
-        s.FidelityWeight = 0.5;
-      }),
-    MakeKind<Heat>("HeatDeblurring", 1,
-      [](Heat& s)
-      {
-        s.Mode = HeatMode::SteadyState;
-        s.FidelityWeight = 2.0;
-        s.Blur.FWHM = 0.15;
-      }),
-    MakeKind<Heat>("HeatAutomaticFidelity", 2, [](Heat& s) { s.AutomaticFidelity = true; }),
-
-    MakeKind<TV>("TotalVariation", 3),
-    MakeKind<TV>(
-      "TotalVariationPerChannel", 2, [](TV& s) { s.ChannelCoupling = ChannelCoupling::PerChannel; },
-      Content::Colors),
-    MakeKind<TV>("TotalVariationDirected", 2, [](TV& s) { s.AcrossDiffusivity = 0.2; }),
-    MakeKind<TV>(
-      "TotalVariationOnCells", 2, [](TV& s) { s.AutomaticFidelity = true; },
-      Content::ScalarsOnCells),
-    MakeKind<TV>("TotalVariationLaggedL1", 2, [](TV& s) { s.FidelityNorm = FidelityNorm::L1; }),
-    MakeKind<TV>(
-      "PeronaMalik", 2, [](TV& s) { s.EdgeFunction = EdgeFunctionKind::PeronaMalikRational; },
-      Content::Colors),
-    MakeKind<TV>("TotalVariationImplicit", 2, setImplicit, Content::Colors),
-    MakeKind<TV>("TotalVariationL1", 2,
-      [=](TV& s)
-      {
-        setImplicit(s);
-        s.FidelityNorm = FidelityNorm::L1;
-      }),
-    MakeKind<TV>("TotalVariationSteadyState", 1, setSteady),
-    MakeKind<TV>("TotalVariationSteadyStateOnCells", 1, setSteady, Content::ScalarsOnCells),
-    MakeKind<TV>(
-      "GeneralizedVariation", 1,
-      [=](TV& s)
-      {
-        setSteady(s);
-        s.Regularizer = Regularizer::TGV;
-      },
-      Content::Colors),
-    MakeKind<TV>(
-      "GeneralizedVariationOnCells", 1,
-      [=](TV& s)
-      {
-        setSteady(s);
-        s.Regularizer = Regularizer::TGV;
-      },
-      Content::ScalarsOnCells),
-    MakeKind<TV>("TotalVariationDeblurring", 1,
-      [=](TV& s)
-      {
-        setSteady(s);
-        s.Blur.FWHM = 0.15;
-        s.AutomaticBlurFidelity = false;
-      }),
-    MakeKind<TV>(
-      "CrouzeixRaviart", 2, [](TV& s) { s.Discretization = Discretization::CrouzeixRaviart; }),
-    MakeKind<TV>("CrouzeixRaviartSteadyState", 1,
-      [=](TV& s)
-      {
-        setSteady(s);
-        s.Discretization = Discretization::CrouzeixRaviart;
-      }),
-    MakeKind<TV>("CrouzeixRaviartImplicit", 2,
-      [=](TV& s)
-      {
-        setImplicit(s);
-        s.Discretization = Discretization::CrouzeixRaviart;
-      }),
-
-    MakeKind<Harmonic>("Harmonic", 2, {}, Content::UnitVectors),
-    MakeKind<Harmonic>(
-      "HarmonicExplicit", 2, [](Harmonic& s) { s.Scheme = HarmonicMap::Scheme::ExplicitReaction; },
-      Content::UnitVectors, Exemption::Energy),
-    MakeKind<Harmonic>(
-      "HarmonicMinimizing", 1,
-      [](Harmonic& s) { s.Scheme = HarmonicMap::Scheme::MinimizingMovement; },
-      Content::UnitVectors),
-    MakeKind<Harmonic>(
-      "HarmonicLines", 2, [](Harmonic& s) { s.LineField = true; }, Content::UnitVectors),
-    MakeKind<Harmonic>(
-      "HarmonicLinesExplicit", 2,
-      [](Harmonic& s)
-      {
-        s.Scheme = HarmonicMap::Scheme::ExplicitReaction;
-        s.LineField = true;
-      },
-      Content::UnitVectors, Exemption::Energy),
-    MakeKind<Harmonic>(
-      "HarmonicDirect", 2,
-      [](Harmonic& s)
-      {
-        s.Exponent = 2.0;
-        s.Solver = SolverMethod::Direct;
-      },
-      Content::UnitVectors),
-    MakeKind<Harmonic>(
-      "HarmonicMultigrid", 2,
-      [](Harmonic& s)
-      {
-        s.Exponent = 1.5;
-        s.FidelityWeight = 0.1;
-        s.Solver = SolverMethod::Multigrid;
-      },
-      Content::UnitVectors),
-    MakeKind<Harmonic>(
-      "HarmonicTangent", 2, [](Harmonic& s) { s.TangentTo = TangentTo::Surface; },
-      Content::UnitVectors, Exemption::Numbering),
-    MakeKind<Harmonic>(
-      "HarmonicTangentLinesOnCells", 2,
-      [](Harmonic& s)
-      {
-        s.TangentTo = TangentTo::Surface;
-        s.LineField = true;
-      },
-      Content::UnitVectorsOnCells, Exemption::Numbering),
-    MakeKind<Harmonic>("HarmonicOnCells", 2, {}, Content::UnitVectorsOnCells),
-
-    MakeKind<Shah>("MumfordShah", 40, {}, Content::Scalars, Exemption::Energy),
-    MakeKind<Shah>(
-      "MumfordShahGivenScales", 20, [](Shah& s) { s.AutomaticThreshold = false; }, Content::Colors,
-      Exemption::Energy),
-    MakeKind<Shah>(
-      "MumfordShahOnCells", 10, [](Shah& s) { s.AutomaticThreshold = false; },
-      Content::ScalarsOnCells, Exemption::Energy),
-
-    MakeKind<Tensor>("Beltrami", 2, {}, Content::Colors),
-    MakeKind<Tensor>("BeltramiOnCells", 4, {}, Content::ScalarsOnCells),
-    MakeKind<Tensor>(
-      "BeltramiFixedMetric", 2, [](Tensor& s) { s.Metric = BeltramiFlow::Metric::Fixed; }),
-    MakeKind<Tensor>(
-      "CoherenceEnhancing", 2, [](Tensor& s) { s.Model = TensorModel::CoherenceEnhancing; },
-      Content::Colors),
-    MakeKind<Tensor>("EdgeEnhancing", 2, [](Tensor& s) { s.Model = TensorModel::EdgeEnhancing; }),
-
-    MakeKind<Texture>(
-      "TextureFirstOrder", 3,
-      [](Texture& s) { s.TimeIntegrator = SurfaceDiffusion::TimeIntegrator::FirstOrder; },
-      Content::Nothing),
-    MakeKind<Texture>(
-      "TextureDirect", 3, [](Texture& s) { s.Solver = SolverMethod::Direct; }, Content::Nothing),
-    MakeKind<Texture>(
-      "TextureCoarseStart", 40, [](Texture& s) { s.CoarseStartSize = 200; }, Content::Nothing,
-      Exemption::Numbering),
-
-    MakeKind<Segments>("Segmentation", 1, [](Segments& s) { s.StopTolerance = 0.1; }),
-    MakeKind<Segments>(
-      "SegmentationOfColors", 1,
-      [](Segments& s)
-      {
-        s.NumberOfRegions = 3;
-        s.StopTolerance = 0.1;
-      },
-      Content::ColorsOnCells),
-
-    MakeKind<Spline>("Interpolation", 1, {}, Content::Scalars, Exemption::Allocation),
-    MakeKind<Spline>(
-      "InterpolationOfColors", 1,
-      [](Spline& s)
-      {
-        s.KeepRange = true;
-        s.ComputeError = true;
-        s.CorrelationLength = 0.5;
-      },
-      Content::Colors, Exemption::Allocation),
-    MakeKind<Spline>(
-      "InterpolationRobust", 1,
-      [](Spline& s)
-      {
-        s.Robust = true;
-        s.LeaveOneOut = true;
-      },
-      Content::Scalars, Exemption::Allocation),
-    MakeKind<Spline>(
-      "InterpolationFree", 1, [](Spline& s) { s.Boundary = RimCondition::Free; },
-      Content::ScalarsOnCells, Exemption::Allocation),
-  };
-  for (int k = 0; k < NumberOfKinetics; ++k)
-  {
-    const auto kinetics = static_cast<KineticsName>(k);
-    kinds.push_back(MakeKind<Texture>(
-      GetKinetics(kinetics).Name, 3, [kinetics](Texture& s) { s.Kinetics = kinetics; },
-      Content::Nothing));
-  }
-  for (const auto& [lagged, implicit, steady, model] :
-    { std::tuple("OpponentColors", "OpponentColorsImplicit", "OpponentColorsSteadyState",
-        ColorModel::Opponent),
-      std::tuple("ChromaticityBrightness", "ChromaticityBrightnessImplicit",
-        "ChromaticityBrightnessSteadyState", ColorModel::ChromaticityBrightness) })
-  {
-    const auto setModel = [model = model](TV& s) { s.Color.Model = model; };
-    const auto and_ = [=](const auto& set)
+    std::vector<ModelKind> kinds;
+    std::ifstream file(SURFACEDIFFUSION_KINDS_OF_RUN);
+    for (std::string line; std::getline(file, line);)
     {
-      return [=](TV& s)
+      std::istringstream words(line);
+      std::string first;
+      if (words >> first && first == "model")
       {
-        setModel(s);
-        set(s);
-      };
-    };
-    kinds.push_back(MakeKind<TV>(lagged, 2, setModel, Content::Colors));
-    kinds.push_back(MakeKind<TV>(implicit, 2, and_(setImplicit), Content::Colors));
-    kinds.push_back(MakeKind<TV>(steady, 1, and_(setSteady), Content::Colors));
-  }
-  return kinds;
+        kinds.push_back(ReadModelKind(words));
+      }
+    }
+    return kinds;
+  }();
+  return all;
 }
 
 } // namespace SurfaceDiffusion::Testing

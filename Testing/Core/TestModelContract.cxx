@@ -614,25 +614,20 @@ std::vector<ModelKind> Without(Exemption from, std::vector<ModelKind> kinds)
 /// Also the models of colours with other settings.
 std::vector<ModelKind> EnergyKinds()
 {
-  using TV = TotalVariationSettings;
   std::vector<ModelKind> kinds = Without(Exemption::Energy, DataModelKinds());
-  for (const auto& [name, change] :
-    std::vector<std::pair<std::string, std::function<void(TV&)>>>{
-      { "Charbonnier", [](TV& s) { s.EdgeFunction = EdgeFunctionKind::Charbonnier; } },
-      { "PeronaMalik", [](TV& s) { s.EdgeFunction = EdgeFunctionKind::PeronaMalikRational; } },
-      { "Exponent", [](TV& s) { s.Color.ChromaticityExponent = 1.5; } },
-      { "Edges", [](TV& s) { s.Discretization = Discretization::CrouzeixRaviart; } } })
+  for (const char* const colors : { "Opponent", "ChromaticityBrightness" })
   {
-    for (const ColorModel model : { ColorModel::Opponent, ColorModel::ChromaticityBrightness })
+    for (const char* const change :
+      { "EdgeFunction=Charbonnier", "EdgeFunction=PeronaMalikRational", "ChromaticityExponent=1.5",
+        "Discretization=CrouzeixRaviart" })
     {
-      kinds.push_back(
-        MakeKind<TV>((model == ColorModel::Opponent ? "Opponent" : "Chromaticity") + name, 6,
-          [model = model, change = change](TV& s)
-          {
-            s.Color.Model = model;
-            change(s);
-          },
-          Content::Colors));
+      const std::string all = change;
+      const bool isNumber = all.back() == '5';
+      const std::size_t sign = all.find('=');
+      std::istringstream line(colors + (isNumber ? all.substr(0, sign) : all.substr(sign + 1)) +
+        " TotalVariation Colors NumberOfTimeSteps=6 AutomaticFidelity=0 ColorModel=" + colors +
+        " " + all);
+      kinds.push_back(ReadModelKind(line));
     }
   }
   return kinds;

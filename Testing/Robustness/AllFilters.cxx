@@ -88,7 +88,7 @@ const std::vector<FilterKind>& AllFilters()
     std::ifstream file(SURFACEDIFFUSION_KINDS_OF_RUN);
     for (std::string line; std::getline(file, line);)
     {
-      if (!line.empty() && line[0] != '#')
+      if (!line.empty() && line[0] != '#' && line.rfind("model ", 0) != 0)
       {
         kinds.push_back(ReadKind(line));
       }
