@@ -13,7 +13,7 @@ from ..files import read_data
 from ..files.content import read_content
 from . import batch, common, inputs, values
 from .report import counted
-from .stages import all_columns, change_data, columns_of_missing
+from .stages import all_columns, change_data, panels_of_missing
 
 SIGMA_TO_FWHM = math.sqrt(8 * math.log(2))
 
@@ -168,7 +168,7 @@ def _smooth_file(arguments, report):
         change_data(arguments, report, "Smoothing", reach, all_columns, content=content,
                     say=lambda surface: "smoothed to " + _width_text(width, surface))
         return
-    change_data(arguments, report, "Smoothing", compute, columns_of_missing, content=content,
+    change_data(arguments, report, "Smoothing", compute, panels_of_missing, content=content,
                 say=lambda surface: _width_text(width, surface))
 
 
