@@ -57,7 +57,7 @@ class Patch:
 #: The arguments that name what a command writes, and what it reads beside DATA
 _OUTPUTS = {"output": "OUTPUT", "map": "--map", "curves": "--curves", "nearest": "--nearest", "error": "--error",
             "valid": "-valid-roi-out", "vectors": "-vectors", "mean": "-mean", "gauss": "-gauss"}
-_INPUTS = ("surface", *SIDES, "roi", "areas", "missing", "residuals", "fixed", "speed", "sources", "values",
+_INPUTS = ("surface", *SIDES, "roi", "areas", "missing", "data_roi", "residuals", "fixed", "speed", "sources", "values",
            "source", "target", "source_areas", "target_areas")
 
 
