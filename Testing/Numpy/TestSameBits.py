@@ -86,7 +86,8 @@ def keywords_of(function, properties):
     if function == "random_field":
         keywords["n"] = keywords.pop("number_of_fields", 1)
         covariance = keywords.pop("covariance", "")
-        keywords.update({"nu": int(covariance[-1])} if covariance else {})
+        if covariance:
+            keywords["nu"] = keywords.pop("smoothness", int(covariance[-1]) if covariance[-1].isdigit() else 1)
     return keywords
 
 
@@ -252,6 +253,7 @@ class SameBits(unittest.TestCase):
             ("random_field", {"mask": self.mask}, {"FWHM": 0.5, "NumberOfFields": 19, "RandomSeed": -4}),
             ("random_field", {}, {"Covariance": "MaternNu1", "Range": 0.8, "NumberOfFields": 2}),
             ("random_field", {}, {"Covariance": "MaternNu3", "Range": 0.8, "Normalize": False}),
+            ("random_field", {"mask": self.mask}, {"Covariance": "Matern", "Smoothness": 1.5, "Range": 0.8}),
             ("distance", {"marked": (self.values > 1.3) * used}, {"Method": "Heat"}),
             ("distance", {"marked": (self.values > 1.3) * used * np.arange(len(x))}, {}),
             ("distance", {"marked": (self.values > 1.3) * used * 1.0}, {"RefineTo": 0.06}),

@@ -484,7 +484,8 @@ inline std::vector<FilterKind> AllFilters()
     MakeKind<vtkSurfaceRandomFieldFilter>("RandomFieldOfMatern", "RandomField", 0,
       [](vtkSurfaceRandomFieldFilter* f)
       {
-        f->SetCovarianceToMaternNu3();
+        f->SetCovarianceToMatern();
+        f->SetSmoothness(3.0);
         f->SetRange(0.8);
         f->NormalizeOff();
         f->SetRandomSeed(7);

@@ -513,9 +513,10 @@ inline List OfRandomField()
 {
   using F = vtkSurfaceRandomFieldFilter;
   return {
-    RANDOM_PROPERTY(F, Covariance, Choice(dice, 3)),
+    RANDOM_PROPERTY(F, Covariance, Choice(dice, 4)),
     RANDOM_PROPERTY(F, FWHM, ZeroOrPositive(dice)),
     RANDOM_PROPERTY(F, Range, ZeroOrPositive(dice)),
+    RANDOM_PROPERTY(F, Smoothness, dice.Logarithmic(0.1, 4.0)),
     RANDOM_PROPERTY(F, NumberOfFields, 1 + dice.Below(20)),
     RANDOM_PROPERTY(F, RandomSeed, dice.Below(100) - 50),
     RANDOM_PROPERTY(F, Normalize, dice.Flip()),
