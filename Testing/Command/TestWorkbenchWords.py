@@ -162,9 +162,9 @@ class Words(WordsTest):
                 ("-metric-estimate-fwhm a.surf.gii a.func.gii -demean", "-demean without -whole-file"),
                 ("-metric-gradient a.surf.gii a.func.gii o.func.gii -vectors o.func.gii",
                  "o.func.gii is OUTPUT and -vectors; allowed: different files"),
-                ("-metric-dilate a.func.gii a.surf.gii 10 o.func.gii -nearest -exponent 3", "not allowed with argument"),
-                ("-cifti-dilate a.func.gii COLUMN 10 8 o.dscalar.nii", "a GIFTI file; allowed: CIFTI"),
-                ("-cifti-gradient a.dscalar.nii", "allowed: surfacediffusion derivatives")):
+                ("-metric-dilate a.func.gii a.surf.gii 10 o.func.gii -nearest -exponent 3",
+                 "not allowed with argument"),
+                ("-cifti-dilate a.func.gii COLUMN 10 8 o.dscalar.nii", "a GIFTI file; allowed: CIFTI")):
             code, _, error = run(*line.split())
             self.assertEqual((code, error.count("\n")), (2, 1), error)
             self.assertIn(message, error)

@@ -18,8 +18,8 @@ SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface",
 
 #: What a run reads where a command has no such argument
 ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "structures": [], "faces": False,
-          "areas": [],
-          "roi": None, "missing": None, "match_columns": False, "any_hemisphere": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
+          "areas": [], "roi": None, "missing": None, "match_columns": False, "any_hemisphere": False,
+          "fix_zeros_volume": False, "fix_zeros_surface": False}
 
 SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK."
 
