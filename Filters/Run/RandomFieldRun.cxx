@@ -17,8 +17,8 @@ void RandomFieldSettings::Visit(SettingVisitor& visitor)
   visitor.Choice({ "Covariance", "",
                    "Gaussian: fields are as smooth as white noise after the heat equation. "
                    "MaternNu1 and MaternNu3: the covariance is Matern's with nu = 1, a rougher "
-                   "field without slopes, or nu = 3." },
-    this->Covariance, { "Gaussian", "MaternNu1", "MaternNu3" });
+                   "field without slopes, or nu = 3. Matern: nu is the Smoothness." },
+    this->Covariance, { "Gaussian", "MaternNu1", "MaternNu3", "Matern" });
   visitor.Number({ "FWHM", "coordinates",
                    "Of Gaussian: full width at half maximum of the kernel that white noise would "
                    "be smoothed with, in the unit of the coordinates. 0: 10 h.",
@@ -29,6 +29,15 @@ void RandomFieldSettings::Visit(SettingVisitor& visitor)
                    "sqrt(8 nu)/kappa, in the unit of the coordinates. 0: 20 h.",
                    "Covariance!=Gaussian" },
     this->Range, SettingRange::NonNegative());
+  SettingRange smoothness = SettingRange::Between(0.0, 4.0, "numbers above 0, up to 4");
+  smoothness.LowIncluded = false;
+  visitor.Number({ "Smoothness", "",
+                   "nu of Matern's covariance, without a unit: fields have derivatives of orders "
+                   "below it. With 0.5 "
+                   "the correlation is exp(-kappa r). Other numbers than 1 and 3 take up to 14 "
+                   "factors, and the covariance is exact to 0.5 % of the variance.",
+                   "Covariance=Matern" },
+    this->Smoothness, smoothness);
   visitor.Integer({ "NumberOfFields", "",
                     "The number of fields, which are independent: the components of the result." },
     this->NumberOfFields, SettingRange::AtLeast(1, "1 or more"));
@@ -41,6 +50,13 @@ void RandomFieldSettings::Visit(SettingVisitor& visitor)
                    "deviation on the plane, and have more variance near boundaries." },
     this->Normalize);
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
+}
+
+double RandomFieldSettings::Nu() const
+{
+  return this->Covariance == Kind::Matern ? this->Smoothness
+    : this->Covariance == Kind::MaternNu3 ? 3.0
+                                          : 1.0;
 }
 
 double RandomFieldSettings::Width(double h) const
@@ -78,7 +94,7 @@ void RandomFieldRun::Update(
   this->UnlikeEdges = this->IsInEdges ? SentenceOfUnlikeEdges(mesh) : Sentence();
   RandomField::Settings field;
   field.Covariance = isGaussian ? FieldCovariance::Gaussian : FieldCovariance::Matern;
-  field.Nu = settings.Covariance == RandomFieldSettings::Kind::MaternNu3 ? 3 : 1;
+  field.Nu = settings.Nu();
   field.Width = field.Range = width / mesh.LengthUnit();
   field.HasUnitVariance = settings.Normalize;
   Values fields(mesh.NumberOfVertices(), settings.NumberOfFields);

@@ -18,12 +18,14 @@ struct RandomFieldSettings : Settings
   {
     Gaussian,
     MaternNu1,
-    MaternNu3
+    MaternNu3,
+    Matern
   };
 
   Kind Covariance = Kind::Gaussian;
   double FWHM = 0.0;
   double Range = 0.0;
+  double Smoothness = 1.0;
   int NumberOfFields = 1;
   int RandomSeed = 0;
   bool Normalize = true;
@@ -31,6 +33,9 @@ struct RandomFieldSettings : Settings
   double MergeTolerance = 0.0;
 
   void Visit(SettingVisitor& visitor) override;
+
+  /// nu of Matern's covariance
+  double Nu() const;
 
   /// FWHM or Range, in units of length; 10 and 20 mean edges h for 0.
   double Width(double h) const;

@@ -291,19 +291,27 @@ progress
         _, rows, places = _as_sources(surface, sources)
         if places is not None:
             raise ValueError(f"sources is {shorten(sources)}; allowed: rows of points, or flags")
-    inputs = _make_input(surface, mask=mask, roi=roi, speed=speed, directions=directions)
-    runner = Runner("distance", {
+    entries = find_each(surface, rows, cutoff, {
         "method": method, "along_speed": along_speed, "across_speed": across_speed,
-        "merge_coincident_points": merge_coincident_points, "merge_tolerance": merge_tolerance}, _ARRAYS)
+        "merge_coincident_points": merge_coincident_points, "merge_tolerance": merge_tolerance}, progress,
+        mask=mask, roi=roi, speed=speed, directions=directions)
+    found = sparse.csr_array(entries, shape=(len(entries[2]) - 1, surface.n_points))
+    return found if rows is not None else _means_with_transposed(found)
+
+
+def find_each(surface: Surface, rows: Any, cutoff: float, properties: dict[str, Any], progress: Progress,
+              **arrays: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Data, columns and starts of rows of distances(), without scipy."""
+    inputs = _make_input(surface, **arrays)
+    runner = Runner("distance", properties, _ARRAYS)
     with surface._lock, ProgressReporter(progress) as reporter:
         run = surface._runs.setdefault("distance", _core.SurfaceRuns("distance"))
-        entries = runner.call(run.find_each, inputs.core, runner.settings, rows, cutoff,
-                              reporter.callable)
+        entries: tuple[NDArray[Any], NDArray[Any], NDArray[Any]] = runner.call(
+            run.find_each, inputs.core, runner.settings, rows, cutoff, reporter.callable)
         sentences = runner.warnings(run)
         reporter.finish_part()
     warn(sentences)
-    found = sparse.csr_array(entries, shape=(len(entries[2]) - 1, surface.n_points))
-    return found if rows is not None else _means_with_transposed(found)
+    return entries
 
 
 def _means_with_transposed(matrix: Any) -> Any:

@@ -91,3 +91,22 @@ class VoxelSmoother:
             result[(slice(None), *to)] += np.exp(-0.5 * (distance / self._sigma) ** 2) * box[
                 (slice(None), *of)]
         return result
+
+
+def voxel_fwhm(voxels: NDArray[Any], affine: NDArray[Any], values: NDArray[Any]) -> NDArray[np.float64]:
+    """The smoothness (3,) of all columns of values (v, k) along the axes of the grid, as a full width at half
+    maximum, from the variance of differences between neighbours (S. Forman et al., Magnetic Resonance in Medicine
+    33, 1995, 636-647). NaN of values without correlation. voxels, affine: as of VoxelSmoother."""
+    voxels = np.asarray(voxels, dtype=np.int64)
+    low = voxels.min(axis=0)
+    shape = voxels.max(axis=0) - low + 2  # the last layer of each axis is empty
+    rows = np.full(shape, -1)
+    rows[tuple((voxels - low).T)] = np.arange(len(voxels))
+    widths = np.linalg.norm(np.asarray(affine, dtype=float)[:3, :3], axis=0)
+    for axis in range(3):
+        ends = np.stack([rows, np.roll(rows, -1, axis)])
+        a, b = ends[:, (ends >= 0).all(axis=0)]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            widths[axis] *= np.sqrt(-2.0 * np.log(2.0) / np.log(
+                1.0 - np.var(values[a] - values[b]) / (2.0 * np.var(values))))
+    return widths

@@ -54,7 +54,8 @@ def scale_filter(
     ----------
     data : DataArray of xarray, UxDataArray, or UgridDataArray
         Values with a dimension of points or faces, and others such as time and depth. NaN is left out, as land
-        is, at each of these for itself; values with NaN at the same places share a factor.
+        is, at each of these for itself, and so is the attribute `_FillValue` or `missing_value`; values with
+        NaN at the same places share a factor.
     wavelength : float or array_like of shape (points,), above 0
         In the unit of the surface: kilometres on the sphere of `surface_of`.
     surface : Surface or tuple (points, faces), optional
@@ -80,6 +81,9 @@ def scale_filter(
     values = np.moveaxis(np.asarray(data.values, dtype=np.float64), axis, 0)
     rows = values.shape[0]
     columns = values.reshape(rows, -1)
+    attributes = getattr(data, "attrs", {})
+    fills = [float(attributes[name]) for name in ("_FillValue", "missing_value") if name in attributes]
+    columns = np.where(np.isin(columns, fills), np.nan, columns)  # of files that were read undecoded
     # Neighbours in order share their masks more often than others: of (time, depth) those of a depth.
     missing = np.packbits(np.isnan(columns), axis=0)
     order = np.lexsort(missing[::-1]) if np.isnan(columns).any() else np.arange(columns.shape[1])

@@ -459,7 +459,7 @@ class Sentences(ForeignTest):
 
     def test_commands_of_workbench_are_answered_with_those_that_are_here(self):
         for word, here in (("-cifti-gradient", "derivatives"),
-                           ("-metric-dilate", "inpaint, which fills by harmonic functions")):
+                           ("-label-resample", "resample")):
             self.refused(f"^surfacediffusion: {word} is a command of Workbench .*; allowed: surfacediffusion "
                          f"{here}, or -metric-smoothing, -cifti-smoothing, -metric-resample", word, "a", "b", "c")
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """Commands with Workbench's names and arguments beside wb_command: gradients, curvatures, distances from a
-vertex, areas of vertices and the smoothness of columns."""
+vertex, areas of vertices, the smoothness of columns, and dilation."""
 
 import re
 import shutil
@@ -10,17 +10,23 @@ import unittest
 
 import numpy as np
 import samples
+from nibabel import cifti2
 from samples import run
 from TestWorkbench import WorkbenchTest
 
 from surfacediffusion import Surface, heat
 from surfacediffusion.files import read_data
+from surfacediffusion.files.cifti import open_cifti
+from surfacediffusion.files.content import read_content
 
 POINTS, FACES = samples.sphere(5, 50.0)
 POINTS = POINTS * [1.0, 0.8, 0.7]
 
 
 def columns(path):
+    """Of all vertices and voxels."""
+    if path.endswith(".nii"):
+        return np.asarray(open_cifti(read_content(path)).values).T.astype(float)
     return read_data(path).parts[0].values.astype(float)
 
 
@@ -33,6 +39,20 @@ class WordsTest(WorkbenchTest):
         samples.write_gifti("roi.func.gii", {"roi": POINTS[:, 0] > -10})
         self.areas = Surface(POINTS, FACES).vertex_areas
         samples.write_gifti("areas.func.gii", {"areas": 1.44 * self.areas})
+
+    def write_cifti(self, name, values, holes=0.0):
+        """Columns on a part of the surface and among two structures of voxels, some of which are 0."""
+        inside = np.flatnonzero(POINTS[:, 2] > -25)
+        grid = np.indices((14, 14, 14))
+        ball = np.linalg.norm(grid.T - [6, 6, 6], axis=-1) < 5
+        axis = cifti2.BrainModelAxis.from_surface(inside, len(POINTS), "CORTEX_LEFT")
+        for mask, structure in ((ball, "THALAMUS_LEFT"), (grid[0] > 11, "BRAIN_STEM")):
+            axis += cifti2.BrainModelAxis.from_mask(mask, structure, affine=np.diag([2, 2.2, 1.9, 1]))
+        rng = np.random.default_rng(2)
+        rows = np.concatenate([values[inside].T, rng.normal(3, 1, (values.shape[1], len(axis) - len(inside)))], axis=1)
+        rows[:, rng.random(len(axis)) < holes] = 0
+        cifti2.Cifti2Image(rows.astype(np.float32), cifti2.Cifti2Header.from_axes(
+            (cifti2.ScalarAxis(list("xyz")[:len(rows)]), axis))).to_filename(name)
 
 
 @unittest.skipUnless(shutil.which("wb_command"), "needs Connectome Workbench")
@@ -94,6 +114,45 @@ class SameAsWorkbench(WordsTest):
             numbers = [[float(x) for x in re.findall(r"FWHM: ([\d.]+)", text)] for text in (ours, theirs)]
             np.testing.assert_allclose(*numbers, rtol=0.05)
 
+    def test_smoothness_of_structures(self):
+        self.write_cifti("a.dscalar.nii", self.maps)
+        self.succeed("cifti-smoothing", "a.dscalar.nii", 4, 7, "COLUMN", "s.dscalar.nii", "-fwhm", "-left-surface",
+                     "a.surf.gii")
+        for words in ("", "-whole-file -demean", "-merged-volume", "-column 2"):
+            line = f"-cifti-estimate-fwhm s.dscalar.nii -surface CORTEX_LEFT a.surf.gii {words}".split()
+            theirs = subprocess.run(["wb_command", *line], check=True, capture_output=True, text=True).stdout
+            ours = self.succeed(*line)
+            number = r"(?<=[ ])-?[\d.]+(?!:)"
+            self.assertEqual(*(re.sub(number, "", text).split() for text in (ours, theirs)))
+            found, expected = (np.array(re.findall(number, text), float) for text in (ours, theirs))
+            np.testing.assert_allclose(found, expected, rtol=0.07)
+            self.assertGreater((abs(found / expected - 1) < 1e-3).sum(), len(found) / 2)  # those of voxels
+
+    def test_dilation(self):
+        holes = 3 + self.maps
+        holes[(POINTS[:, 0] > 30) | (np.arange(len(POINTS)) % 13 == 0)] = 0
+        samples.write_gifti("holes.func.gii", {name: holes[:, k] for k, name in enumerate("xyz")})
+        samples.write_gifti("bad.func.gii", {"bad": POINTS[:, 1] > 20})
+        for words, share in (("", 1e-3), ("-nearest", 5e-3), ("-exponent 3 -column 2", 0.01),
+                             ("-bad-vertex-roi bad.func.gii -data-roi roi.func.gii", 0.01),
+                             ("-corrected-areas areas.func.gii", 1e-3)):
+            line = f"-metric-dilate holes.func.gii a.surf.gii 8.3 @.func.gii {words}"
+            for ours, theirs in self.both(line, "@.func.gii"):
+                same = (ours == 0) == (theirs == 0)
+                self.assertLess((~same).sum(), 60 * same.shape[1])  # at the end of the distance
+                self.close(np.where(same, ours, theirs), theirs, share)
+
+    def test_dilation_of_structures(self):
+        self.write_cifti("a.dscalar.nii", 3 + self.maps, holes=0.4)
+        self.write_cifti("bad.dscalar.nii", 1 + np.zeros((len(POINTS), 1)), holes=0.8)
+        for words in ("", "-merged-volume", "-bad-brainordinate-roi bad.dscalar.nii"):
+            line = f"-cifti-dilate a.dscalar.nii COLUMN 6 5 @.dscalar.nii -left-surface a.surf.gii {words}"
+            for ours, theirs in self.both(line, "@.dscalar.nii"):
+                self.close(ours, theirs, 2e-3)
+        line = "-cifti-dilate a.dscalar.nii COLUMN 6 5 @.dscalar.nii -left-surface a.surf.gii -nearest"
+        for ours, theirs in self.both(line, "@.dscalar.nii"):
+            self.assertLess((abs(ours - theirs) > 1e-5).any(axis=1).mean(), 0.02)  # several are the nearest
+
 
 class Words(WordsTest):
     def test_what_is_not_allowed_is_one_line(self):
@@ -103,9 +162,9 @@ class Words(WordsTest):
                 ("-metric-estimate-fwhm a.surf.gii a.func.gii -demean", "-demean without -whole-file"),
                 ("-metric-gradient a.surf.gii a.func.gii o.func.gii -vectors o.func.gii",
                  "o.func.gii is OUTPUT and -vectors; allowed: different files"),
-                ("-metric-dilate a.func.gii a.surf.gii 10 o.func.gii",
-                 "surfacediffusion inpaint, which fills by harmonic functions"),
-                ("-cifti-estimate-fwhm a.dscalar.nii", "allowed: surfacediffusion fwhm")):
+                ("-metric-dilate a.func.gii a.surf.gii 10 o.func.gii -nearest -exponent 3",
+                 "not allowed with argument"),
+                ("-cifti-dilate a.func.gii COLUMN 10 8 o.dscalar.nii", "a GIFTI file; allowed: CIFTI")):
             code, _, error = run(*line.split())
             self.assertEqual((code, error.count("\n")), (2, 1), error)
             self.assertIn(message, error)

@@ -43,7 +43,8 @@ TEST(RandomFieldFilter, HasVarianceOneForEveryCovariance)
   filter->SetNumberOfFields(200);
   filter->SetFWHM(0.3);
   filter->SetRange(0.4);
-  for (const int covariance : { 0, 1, 2 })
+  filter->SetSmoothness(1.5);
+  for (const int covariance : { 0, 1, 2, 3 })
   {
     filter->SetCovariance(covariance);
     vtkDataArray* const fields = FieldOf(filter);
@@ -126,14 +127,17 @@ TEST(RandomFieldFilter, NamesWhatIsNotAllowedAndWhatIsNotResolved)
   filter->SetFWHM(-1.0);
   filter->SetNumberOfFields(0);
   filter->SetCovariance(7);
+  filter->SetSmoothness(4.5);
   filter->Update();
   ASSERT_EQ(messages.Errors.size(), 1u);
   for (const char* const text : { "FWHM is -1; allowed: ",
-         "NumberOfFields is 0; allowed: 1 or more", "Covariance is 7; allowed: 0 Gaussian" })
+         "NumberOfFields is 0; allowed: 1 or more", "Covariance is 7; allowed: 0 Gaussian",
+         "Smoothness is 4.5; allowed: numbers above 0, up to 4" })
   {
     EXPECT_NE(messages.Errors.front().find(text), std::string::npos) << messages.Errors.front();
   }
   filter->SetNumberOfFields(1);
+  filter->SetSmoothness(1.0);
   filter->SetCovarianceToGaussian();
   filter->SetFWHM(1e-3);
   filter->Update();

@@ -93,7 +93,8 @@ def keywords_of(function, properties):
     if function == "random_field":
         keywords["n"] = keywords.pop("number_of_fields", 1)
         covariance = keywords.pop("covariance", "")
-        keywords.update({"nu": int(covariance[-1])} if covariance else {})
+        if covariance:
+            keywords["nu"] = keywords.pop("smoothness", int(covariance[-1]) if covariance[-1].isdigit() else 1)
     return keywords
 
 

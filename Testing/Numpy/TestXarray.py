@@ -71,6 +71,14 @@ class ScaleFilter(unittest.TestCase):
             np.testing.assert_allclose(found[1, :, depth], sd.scale_filter(HEXAGONS, values[1, :, depth], 0.9),
                                        atol=1e-12)
 
+    def test_undecoded_fill_values_are_land(self):
+        values = RNG.normal(size=HEXAGONS.n_faces).astype(np.float32)
+        values[:40] = np.nan
+        filled = Array(np.nan_to_num(values, nan=-9999.9), ("n_face",))
+        filled.attrs = {"units": "K", "_FillValue": np.float32(-9999.9)}
+        np.testing.assert_array_equal(scale_filter(filled, 0.9, surface=HEXAGONS).values,
+                                      scale_filter(Array(values, ("n_face",)), 0.9, surface=HEXAGONS).values)
+
     def test_grids_of_uxarray_and_xugrid(self):
         lon, lat = degrees(HEXAGONS.points)
         values = RNG.normal(size=HEXAGONS.n_faces)

@@ -122,8 +122,8 @@ DEFAULTS = {
         "Threshold": 0.5, "Flank": 0.0, "Overhang": -1.0, "UpDirection": (0.0, 0.0, 1.0)},
     "vtkSurfaceCurvatureFilter": {**SURFACE, "FWHM": 0.0},
     "vtkSurfaceRandomFieldFilter": {
-        **SURFACE, "Covariance": "Gaussian", "FWHM": 0.0, "Range": 0.0, "NumberOfFields": 1,
-        "RandomSeed": 0, "Normalize": True},
+        **SURFACE, "Covariance": "Gaussian", "FWHM": 0.0, "Range": 0.0, "Smoothness": 1.0,
+        "NumberOfFields": 1, "RandomSeed": 0, "Normalize": True},
     "vtkSurfaceDerivativesFilter": {
         **SURFACE, "Quantity": "Gradient", "SmoothingFWHM": 0.0, "ResultOnCells": False},
     "vtkSurfaceDistanceFilter": {
@@ -138,7 +138,7 @@ DEFAULTS = {
 EDGE_FUNCTIONS = ("TotalVariation", "PeronaMalikExponential", "PeronaMalikRational", "Charbonnier",
                   "Weickert", "Constant")
 WORDS = {
-    "Covariance": ("Gaussian", "MaternNu1", "MaternNu3"),
+    "Covariance": ("Gaussian", "MaternNu1", "MaternNu3", "Matern"),
     "Quantity": ("Gradient", "Divergence", "Curl", "Laplacian", "ConductionVelocity",
                  "Helmholtz"),
     "Units": ("Natural", "Absolute"), "MaskMode": ("Inpaint", "Exclude"),

@@ -159,6 +159,8 @@ std::map<std::string, std::function<void(vtkPolyDataAlgorithm*)>> NeededSettings
   }
   needed["vtkSurfaceRandomFieldFilter Range"] = With<vtkSurfaceRandomFieldFilter>(
     [](vtkSurfaceRandomFieldFilter* f) { f->SetCovarianceToMaternNu1(); });
+  needed["vtkSurfaceRandomFieldFilter Smoothness"] = With<vtkSurfaceRandomFieldFilter>(
+    [](vtkSurfaceRandomFieldFilter* f) { f->SetCovarianceToMatern(); });
   needed["vtkFVMHeatFilter NoiseLevel"] = With<Heat>([](Heat* f) { f->AutomaticFidelityOn(); });
   needed["vtkIntrinsicTVFilter AutomaticFidelity"] =
     With<TV>([](TV* f) { f->SetStopTolerance(0.1); }); // it takes long otherwise

@@ -6,8 +6,8 @@ main() runs a command line. Exit codes: 0 success, 1 the computation failed or w
 2 arguments or files are wrong. Errors are one line on standard error.
 
 A module for each family of commands declares their arguments and runs them: smoothing, denoising,
-filling, edges, parts, shape, distances, scales, fields, resampling, workbench, info, doctor. They are made of the
-arguments in `common` and `values`, and of the stages of a run in `stages`, `inputs`, `batch` and
+filling, dilating, edges, parts, shape, distances, scales, fields, resampling, workbench, info, doctor. They are
+made of the arguments in `common` and `values`, and of the stages of a run in `stages`, `inputs`, `batch` and
 `report`. `arguments` has the list of all commands, in which a new one is entered.
 """
 from __future__ import annotations

@@ -8,7 +8,7 @@ import os
 import re
 
 from . import (
-    denoising, distances, doctor, edges, fields, filling, info, parts, resampling, scales, shape,
+    denoising, dilating, distances, doctor, edges, fields, filling, info, parts, resampling, scales, shape,
     smoothing, workbench)
 from .common import PROGRAM, SIDES, Command, Commands, Parser
 from ..files.cifti import structure_of_word
@@ -25,6 +25,8 @@ COMMANDS = (
     denoising.add_denoise_mesh,
     filling.add_inpaint,
     filling.add_interpolate,
+    dilating.add_metric_dilate,
+    dilating.add_cifti_dilate,
     edges.add_enhance,
     edges.add_edges,
     edges.add_segment,
@@ -45,6 +47,7 @@ COMMANDS = (
     resampling.add_metric_resample,
     workbench.add_metric_gradient,
     workbench.add_metric_estimate_fwhm,
+    workbench.add_cifti_estimate_fwhm,
     workbench.add_surface_curvature,
     workbench.add_surface_geodesic_distance,
     workbench.add_surface_vertex_areas,
@@ -54,14 +57,14 @@ COMMANDS = (
 
 
 #: The commands with Workbench's names and arguments
-SAME_WORDS = ("-metric-smoothing", "-cifti-smoothing", "-metric-resample", "-metric-gradient", "-metric-estimate-fwhm",
+SAME_WORDS = ("-metric-smoothing", "-cifti-smoothing", "-metric-resample", "-metric-dilate", "-cifti-dilate",
+              "-metric-gradient", "-metric-estimate-fwhm", "-cifti-estimate-fwhm",
               "-surface-curvature", "-surface-geodesic-distance", "-surface-vertex-areas")
 
 #: What other commands of Workbench are here
 WORKBENCH = {
-    "-cifti-gradient": "derivatives", "-metric-dilate": "inpaint, which fills by harmonic functions",
-    "-cifti-dilate": "inpaint, which fills by harmonic functions", "-cifti-estimate-fwhm": "fwhm",
-    "-surface-information": "info", "-file-information": "info", "-label-resample": "resample",
+    "-cifti-gradient": "derivatives", "-surface-information": "info", "-file-information": "info",
+    "-label-resample": "resample",
 }
 
 

@@ -8,7 +8,7 @@ import argparse
 import re
 import textwrap
 
-from . import values
+from . import inputs, values
 
 PROGRAM = "surfacediffusion"
 
@@ -18,8 +18,8 @@ SIDES = ("--left", "--right", "--cerebellum", "-left-surface", "-right-surface",
 
 #: What a run reads where a command has no such argument
 ABSENT = {"surface": None, "left": None, "right": None, "cerebellum": None, "structures": [], "faces": False,
-          "areas": [],
-          "match_columns": False, "any_hemisphere": False, "fix_zeros_volume": False, "fix_zeros_surface": False}
+          "areas": [], "roi": None, "missing": None, "match_columns": False, "any_hemisphere": False,
+          "fix_zeros_volume": False, "fix_zeros_surface": False}
 
 SURFACES = "SURFACE: GIFTI (.surf.gii), FreeSurfer (lh.white, ...), OFF, OBJ, PLY, STL, or VTK."
 
@@ -139,6 +139,20 @@ def areas(parser, *options):
                              "STRUCTURE FILE, with Workbench's word; can be repeated, for all surfaces or none")
 
 
+def side_areas(parser):
+    """Workbench's words for the areas of each surface."""
+    for side, structure in inputs.SIDES.items():
+        parser.add_argument(f"-{side}-corrected-areas", dest="areas", metavar="FILE", action="append", default=[],
+                            type=lambda path, structure=structure: f"{structure}\0{path}",
+                            help=f"the areas of the vertices of -{side}-surface")
+
+
+def direction(parser):
+    """Workbench's word for the axis of a CIFTI matrix."""
+    parser.add_argument("direction", choices=("COLUMN",),
+                        help="the direction of the vertices and voxels in the matrix")
+
+
 # ---- what is chosen of the data and of the surface -----------------------------------------------
 
 def region_and_columns(parser):
@@ -158,6 +172,10 @@ def region_and_columns(parser):
 def zeros_and_columns(parser):
     parser.add_argument("--fix-zeros", "-fix-zeros", action="store_true",
                         help="zeros mean missing, as NaN does")
+    columns(parser)
+
+
+def columns(parser):
     parser.add_argument("--column", "-column", action="append", metavar="N|NAME", default=[],
                         help="a column of DATA by number (from 1) or name; can be repeated. "
                              "Default: all; of a VTK file with active scalars, these")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Smoothing of CIFTI files, on surfaces and among voxels, by a few columns at a time."""
+"""New values of CIFTI files, on surfaces and among voxels, by a few columns at a time."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -25,6 +25,21 @@ PANEL = 1 << 23
 
 def smooth(arguments, report, content, width, voxel_width):
     """Smooth a CIFTI file. voxel_width: the FWHM among voxels; 0: they are copied."""
+    def on_surface(solver, values, mask):
+        return heat(solver, values, mask=mask, mask_mode="Exclude", fwhm=width, time_integrator="Exponential",
+                    mass_matrix=arguments.mass_matrix.capitalize(), number_of_time_steps=arguments.steps,
+                    **merging(arguments))
+
+    columns = change(arguments, report, content, "Smoothing", on_surface if width else None,
+                     (lambda *voxels: VoxelSmoother(*voxels, voxel_width)) if voxel_width else None)
+    report.facts.update(voxel_fwhm=voxel_width)
+    return columns
+
+
+def change(arguments, report, content, title, on_surface, among_voxels):
+    """Write a CIFTI file with new values, and return the numbers of its columns. on_surface(surface, values (n, k),
+    mask): the new values, where NaN is missing and the mask outside. among_voxels(voxels, affine): a function of
+    values (v, k) and known (v,). None: they are copied."""
     check_output_folder(arguments.output)
     with report.timed("read"):
         file = open_cifti(content)
@@ -34,11 +49,14 @@ def smooth(arguments, report, content, width, voxel_width):
         data = Data(content.path, "cifti", file.names, [], usual=range(len(file.names)))
         columns = inputs.choose_columns(data, arguments.column)
         surfaces = inputs.read_surfaces(arguments)
-        places = _places(arguments, file, data, surfaces, width, voxel_width)
-        region = _read_region(arguments, file, places, surfaces)
+        places = _places(arguments, file, data, surfaces, on_surface, among_voxels)
+        region = _read_region(arguments, arguments.roi, file, places, surfaces)
+        missing = None
+        if arguments.missing is not None:
+            missing = _read_region(arguments, arguments.missing, file, places, surfaces)[0]
     rows = report.facts.setdefault("columns", [])
     total, done = len(columns) * region.shape[1], 0
-    with report.progress("Smoothing") as progress, file.writing(arguments.output, columns) as write:
+    with report.progress(title) as progress, file.writing(arguments.output, columns) as write:
         for place in places:
             panel = max(1, PANEL // place.count)
             for first in range(0, len(columns), panel):
@@ -46,6 +64,8 @@ def smooth(arguments, report, content, width, voxel_width):
                 with report.timed("read"):
                     values = file.read(chosen, place.slices)
                 if place.solve is not None:
+                    if missing is not None:
+                        values = np.where(missing[place.of_file], np.nan, values)
                     inside = (region if len(region) == 1 else region[chosen])[:, place.of_file]
                     with report.timed("compute"):
                         values, found = _smooth_place(place, file, data, chosen, values, inside,
@@ -56,9 +76,16 @@ def smooth(arguments, report, content, width, voxel_width):
                 done += len(chosen) * place.count
                 if progress is not None:
                     progress(done / total)
-    report.facts.update(data=content.path, output=arguments.output, voxel_fwhm=voxel_width, voxels=sum(
+    report.facts.update(data=content.path, output=arguments.output, voxels=sum(
         place.count for place in places if place.is_volume and place.solve is not None))
     return columns
+
+
+def require_cifti(content):
+    """The content of a file."""
+    if content.kind != "cifti":
+        raise content.error(f"a {content.name} file; allowed: CIFTI (.dscalar.nii, .dtseries.nii)")
+    return content
 
 
 def _fixes_zeros(arguments, place):
@@ -95,8 +122,8 @@ class _Place:
         return sum(place.stop - place.start for place in self.slices)
 
 
-def _places(arguments, file, data, surfaces, width, voxel_width):
-    """The structures to be smoothed."""
+def _places(arguments, file, data, surfaces, on_surface, among_voxels):
+    """The structures to be changed."""
     places, voxels = [], []
     known = [entry.name for entry in file.structures if entry.vertices is not None]
     data.parts = [Part(np.empty((0, 0)), structure=name) for name in known]
@@ -108,14 +135,14 @@ def _places(arguments, file, data, surfaces, width, voxel_width):
         part = Part(np.empty((len(entry.vertices), 1), bool), entry.vertices, entry.size, entry.name)
         surface = inputs.surface_for(part, surfaces, data)
         inputs.on_surface(part, part.values, surface, data)  # checks the numbers
-        places.append(_surface_place(entry, part, surface, areas.get(id(surface)), width, arguments))
+        places.append(_surface_place(entry, part, surface, areas.get(id(surface)), on_surface, arguments))
     if arguments.surface_only:
-        voxel_width = 0
+        among_voxels = None
     groups = [voxels] if arguments.merged_volume and voxels else [[entry] for entry in voxels]
-    return places + [_volume_place(group, voxel_width) for group in groups]
+    return places + [_volume_place(group, among_voxels) for group in groups]
 
 
-def _surface_place(entry, part, surface, areas, width, arguments):
+def _surface_place(entry, part, surface, areas, on_surface, arguments):
     solver = inputs.make_solver(arguments, surface, areas)
 
     def solve(values, known, inside):
@@ -125,28 +152,25 @@ def _surface_place(entry, part, surface, areas, width, arguments):
         full[entry.vertices[~inside]] = 0
         excluded[entry.vertices[inside]] = False
         mask = excluded if excluded.any() else None
-        return heat(solver, full, mask=mask, mask_mode="Exclude", fwhm=width,
-                    time_integrator="Exponential", mass_matrix=arguments.mass_matrix.capitalize(),
-                    number_of_time_steps=arguments.steps,
-                    **merging(arguments))[entry.vertices]
+        return on_surface(solver, full, mask)[entry.vertices]
 
     def measure(inside):
         excluded = np.ones(solver.n_points, dtype=bool)
         excluded[entry.vertices[inside]] = False
         return vertex_areas(surface, excluded, areas)[entry.vertices]
 
-    return _Place(entry.name, [entry.place], part, solve if width else None, measure)
+    return _Place(entry.name, [entry.place], part, solve if on_surface else None, measure)
 
 
-def _volume_place(entries, width):
-    """Voxels that are smoothed together, or copied if the width is 0."""
+def _volume_place(entries, among_voxels):
+    """Voxels that are changed together, or copied."""
     name = entries[0].name if len(entries) == 1 else "Volume"
     slices = [entry.place for entry in entries]
     place = _Place(name, slices, Part(np.empty((0, 0)), structure=name), is_volume=True)
     place.part.vertices = place.of_file
-    if width:
+    if among_voxels:
         affine = entries[0].affine
-        smoother = VoxelSmoother(np.concatenate([entry.voxels for entry in entries]), affine, width)
+        smoother = among_voxels(np.concatenate([entry.voxels for entry in entries]), affine)
         volume = abs(np.linalg.det(affine[:3, :3]))
         place.solve = lambda values, known, inside: smoother(values, known & inside)
         place.areas = lambda inside: inside * volume
@@ -192,15 +216,15 @@ def _smooth_place(place, file, data, columns, values, inside, fix_zeros, report)
     return new.T, entries
 
 
-def _read_region(arguments, file, places, surfaces):
-    """Flags of the region of --roi: (1, v), or (columns of the file, v) if each has its own."""
+def _read_region(arguments, named, file, places, surfaces):
+    """Flags of a region: (1, v), or (columns of the file, v) if each has its own."""
     count = file.structures[-1].place.stop
-    if arguments.roi is None:
+    if named is None:
         return np.ones((1, count), dtype=bool)
-    path, label = inputs.split_label(arguments.roi)
+    path, label = inputs.split_label(named)
     content = read_content(path)
     if content.kind != "cifti" or arguments.surface is not None:
-        return _region_of_one_surface(arguments, file, places, surfaces, count)
+        return _region_of_one_surface(arguments, named, file, places, surfaces, count)
     region = open_cifti(content)
     if arguments.match_columns:
         inputs.require_same_number(path, region.names, file.content.path, file.names)
@@ -223,20 +247,20 @@ def _read_region(arguments, file, places, surfaces):
     return found
 
 
-def _region_of_one_surface(arguments, file, places, surfaces, count):
+def _region_of_one_surface(arguments, path, file, places, surfaces, count):
     """Flags (1, v) from a file of another format, or of one hemisphere."""
     if arguments.match_columns:
         raise ArgumentProblem("--match-columns with SURFACE for a CIFTI file; allowed: --left and --right")
-    marks = dict(inputs.read_marks(arguments.roi, surfaces))
+    marks = dict(inputs.read_marks(path, surfaces))
     found = np.zeros((1, count), dtype=bool)
     for place in places:
         if place.is_volume and place.solve is not None:
-            raise FileError(f"{arguments.roi}: nothing for {place.name}; allowed: a CIFTI file, or "
+            raise FileError(f"{path}: nothing for {place.name}; allowed: a CIFTI file, or "
                             "--surface-only")
         if not place.is_volume:
             found[0, place.of_file] = marks[id(surfaces[""])][place.part.vertices]
     if not found.any():
-        raise FileError(f"{arguments.roi}: no vertex of {surfaces[''].path} is in the region; allowed: at "
+        raise FileError(f"{path}: no vertex of {surfaces[''].path} is in the region; allowed: at "
                         "least one")
     return found
 

@@ -49,16 +49,15 @@ class Patch:
         return self.excluded if self.excluded.ndim == 1 else self.excluded[:, column]
 
     def to_part(self, values):
-        """The rows of the part. Outside the region the values are 0."""
-        if self.excluded.any():
-            values = np.where(self.excluded.reshape(len(values), -1), 0, values)
+        """The rows of the part. Outside the region the values become 0."""
+        _clear(values, self.excluded)
         return values if self.part.vertices is None else values[self.part.vertices]
 
 
 #: The arguments that name what a command writes, and what it reads beside DATA
 _OUTPUTS = {"output": "OUTPUT", "map": "--map", "curves": "--curves", "nearest": "--nearest", "error": "--error",
             "valid": "-valid-roi-out", "vectors": "-vectors", "mean": "-mean", "gauss": "-gauss"}
-_INPUTS = ("surface", *SIDES, "roi", "areas", "missing", "residuals", "fixed", "speed", "sources", "values",
+_INPUTS = ("surface", *SIDES, "roi", "areas", "missing", "data_roi", "residuals", "fixed", "speed", "sources", "values",
            "source", "target", "source_areas", "target_areas")
 
 
@@ -205,7 +204,8 @@ def make_patches(surfaces, data: Data, columns, arguments, labels=False):
     for part in data.parts:
         surface = surface_for(part, surfaces, data)
         every = list(columns) == list(range(part.values.shape[1]))
-        values = np.array(part.values if every else part.values[:, columns], order="C", dtype=_float_type(part.values))
+        # The memory of the file's values, since time series fill it.
+        values = np.require(part.values if every else part.values[:, columns], _float_type(part.values), "W")
         require_finite(values, data, part, columns)
         if arguments.fix_zeros:
             values[values == 0] = np.nan
@@ -216,9 +216,14 @@ def make_patches(surfaces, data: Data, columns, arguments, labels=False):
             what = "face" if data.on_faces else "vertex"
             raise FileError(f"{arguments.roi or data.path}: no {what} of {surface.path} is in the "
                             "region; allowed: at least one")
-        values[np.broadcast_to(excluded.T, values.T.shape).T] = 0
+        _clear(values, excluded)
         patches.append(Patch(surface, part, values, excluded))
     return patches
+
+
+def _clear(values, excluded):
+    """Zero where excluded: (n,), or (n, k)."""
+    values[excluded if excluded.ndim == 1 else np.broadcast_to(excluded, values.shape)] = 0
 
 
 def read_marks(path, surfaces, on_faces=False, columns=None):

@@ -11,7 +11,7 @@ from .. import spectrum as measure
 from .._surface import place
 from . import common, inputs
 from .report import number, number_text
-from .stages import change_data, columns_of_missing, read, require_known
+from .stages import change_data, panels_of_missing, read, require_known
 
 
 def add_fwhm(commands):
@@ -66,7 +66,7 @@ def scale_filter(arguments, report):
         return separate(surface, values, arguments.wavelength, order=arguments.order,
                         on_faces=arguments.faces, mask=_at_place(arguments, mask), progress=progress)
 
-    change_data(arguments, report, "Scales", compute, columns_of_missing,
+    change_data(arguments, report, "Scales", compute, panels_of_missing,
                 say=lambda _: f"wavelength {arguments.wavelength:g}")
 
 

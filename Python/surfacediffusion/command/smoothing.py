@@ -11,9 +11,9 @@ import numpy as np
 from .. import heat, smooth_to_fwhm
 from ..files import read_data
 from ..files.content import read_content
-from . import batch, common, inputs, values
+from . import batch, common, grayordinates, inputs, values
 from .report import counted
-from .stages import all_columns, change_data, columns_of_missing
+from .stages import all_columns, change_data, panels_of_missing
 
 SIGMA_TO_FWHM = math.sqrt(8 * math.log(2))
 
@@ -97,18 +97,14 @@ def add_cifti_smoothing(commands):
                         help="the width on surfaces in mm")
     parser.add_argument("volume_kernel", metavar="VOLUME_KERNEL", type=values.not_negative,
                         help="the width among voxels in mm")
-    parser.add_argument("direction", choices=("COLUMN",),
-                        help="the direction of the vertices and voxels in the matrix")
+    common.direction(parser)
     common.output(parser)
     common.hemispheres(parser)
     _kernels_are_fwhm(parser, "the kernels are full widths at half maximum")
     parser.add_argument("-cifti-roi", dest="roi", metavar="FILE",
                         help="a CIFTI file whose first column is above 0 in the region")
     common.areas(parser, "-corrected-areas")
-    for side in ("left", "right", "cerebellum"):
-        parser.add_argument(f"-{side}-corrected-areas", dest="areas", metavar="FILE", action="append",
-                            type=lambda path, side=side: f"{inputs.SIDES[side]}\0{path}",
-                            help=f"the areas of the vertices of -{side}-surface")
+    common.side_areas(parser)
     for place, word in (("volume", "among voxels"), ("surface", "on surfaces")):
         parser.add_argument(f"-fix-zeros-{place}", action="store_true",
                             help=f"zeros {word} mean missing, as NaN does")
@@ -168,7 +164,7 @@ def _smooth_file(arguments, report):
         change_data(arguments, report, "Smoothing", reach, all_columns, content=content,
                     say=lambda surface: "smoothed to " + _width_text(width, surface))
         return
-    change_data(arguments, report, "Smoothing", compute, columns_of_missing, content=content,
+    change_data(arguments, report, "Smoothing", compute, panels_of_missing, content=content,
                 say=lambda surface: _width_text(width, surface))
 
 
@@ -195,9 +191,7 @@ def smooth_cifti(arguments, report):
     arguments.volume_fwhm = _to_fwhm(arguments, arguments.volume_kernel)
     if not arguments.width and not arguments.volume_kernel:
         raise inputs.ArgumentProblem("SURFACE_KERNEL and VOLUME_KERNEL are 0; allowed: one above 0")
-    content = read_content(arguments.data)
-    if content.kind != "cifti":
-        raise content.error(f"a {content.name} file; allowed: CIFTI (.dscalar.nii, .dtseries.nii)")
+    content = grayordinates.require_cifti(read_content(arguments.data))
     _smooth_grayordinates(arguments, report, content, _width(arguments, report))
 
 
@@ -227,8 +221,6 @@ def _read_noise(arguments, values, mask):
 
 def _smooth_grayordinates(arguments, report, content, width):
     """Surfaces and voxels; the width of these may be another one."""
-    from . import grayordinates
-
     voxel_width = width if arguments.volume_fwhm is None else arguments.volume_fwhm
     columns = grayordinates.smooth(arguments, report, content, width, voxel_width)
     what = f"{counted(len(columns), 'column')}, {_width_text(width)}"

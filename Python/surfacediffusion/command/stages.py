@@ -17,6 +17,9 @@ from .inputs import choose_columns, make_patches, read_surfaces
 from .report import counted, number
 from .surfaces import open_surface
 
+#: Values that are computed together, where columns are independent
+PANEL = 1 << 22
+
 # ---- new values of the data ----------------------------------------------------------------------
 
 def read(arguments, missing=None, content=None):
@@ -52,7 +55,8 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
     with report.progress(title) as progress:
         for patch in patches:
             surface = inputs.make_solver(arguments, patch.surface, areas.get(id(patch.surface)))
-            new = np.empty_like(patch.values)
+            totals = _Totals(patch, data.on_faces, areas.get(id(patch.surface)))
+            new = patch.values  # each group is read before its result replaces it
             for group in groups(data, columns, patch):
                 excluded = patch.excluded_of(group[0])
                 mask = excluded if excluded.any() else None
@@ -63,8 +67,8 @@ def change_data(arguments, report, title, compute, groups, missing=None, say=Non
                         surface, patch.values[:, chosen], mask=mask, mask_mode="Exclude", **options,
                         progress=part_of(progress, done / total, len(group) / total))
                 done += len(group)
+            report.facts.setdefault("columns", []).extend(totals.rows(data, columns))
             results.append(patch.to_part(new))
-            _add_totals(report, data, columns, patch, new, areas)
     target.labels = labels
     with report.timed("write"):
         target.save(arguments.output, results, kept)
@@ -102,6 +106,13 @@ def columns_of_missing(data, columns, patch):
     return list(groups.values())
 
 
+def panels_of_missing(data, columns, patch):
+    """Those groups by a few columns at a time."""
+    count = max(1, PANEL // len(patch.values))
+    return [group[i:i + count] for group in columns_of_missing(data, columns, patch)
+            for i in range(0, len(group), count)]
+
+
 def columns_of_arrays(data, columns, patch):
     """Edges are common to the channels of a colour or a vector, and to no other columns."""
     colour = {"red", "green", "blue"}
@@ -123,22 +134,32 @@ def require_known(patch, group, data, columns):
                         "region; allowed: at least one")
 
 
-def _add_totals(report, data, columns, patch, new, areas):
-    """The integrals over the region before (known values alone) and after."""
-    given = areas.get(id(patch.surface))
-    missing = np.isnan(patch.values).sum(axis=0)
-    rows = report.facts.setdefault("columns", [])
-    regions = [slice(None)] if patch.excluded.ndim == 1 else [[i] for i in range(len(columns))]
-    for region in regions:
-        excluded = patch.excluded_of(0 if isinstance(region, slice) else region[0])
-        sizes = (np.where(excluded, 0, face_areas(patch.surface)) if data.on_faces
-                 else vertex_areas(patch.surface, excluded, given))
-        before, after = _integrals(sizes, patch.values[:, region]), _integrals(sizes, new[:, region])
-        for k, i in enumerate(range(len(columns))[region] if isinstance(region, slice) else region):
-            rows.append({"column": columns[i] + 1, "name": data.names[columns[i]],
-                         "structure": patch.part.structure or patch.surface.structure,
-                         "missing": int(missing[i]), "excluded": int(excluded.sum()),
-                         "total_before": number(before[k]), "total_after": number(after[k])})
+class _Totals:
+    """The integrals of the columns over the region before (known values alone) and after."""
+
+    def __init__(self, patch, on_faces, areas):
+        self._patch = patch
+        self._missing = np.isnan(patch.values).sum(axis=0)
+        every = [slice(None)] if patch.excluded.ndim == 1 else [slice(i, i + 1) for i in range(len(self._missing))]
+        self._regions = []
+        for region in every:
+            excluded = patch.excluded_of(region.start or 0)
+            sizes = (np.where(excluded, 0, face_areas(patch.surface)) if on_faces
+                     else vertex_areas(patch.surface, excluded, areas))
+            self._regions.append((region, sizes, int(excluded.sum())))
+        self._before = self._integrals()
+
+    def _integrals(self):
+        return np.concatenate([_integrals(sizes, self._patch.values[:, region]) for region, sizes, _ in self._regions])
+
+    def rows(self, data, columns):
+        """The facts of each column, whose values are the new ones now."""
+        structure = self._patch.part.structure or self._patch.surface.structure
+        counts = [count for region, _, count in self._regions for _ in columns[region]]
+        return [{"column": column + 1, "name": data.names[column], "structure": structure, "missing": int(missing),
+                 "excluded": excluded, "total_before": number(before), "total_after": number(after)}
+                for column, missing, excluded, before, after in zip(
+                    columns, self._missing, counts, self._before, self._integrals())]
 
 
 def _integrals(areas, values):

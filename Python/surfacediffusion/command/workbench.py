@@ -1,19 +1,22 @@
 # SPDX-FileCopyrightText: Copyright (c) SurfaceDiffusion contributors
 # SPDX-License-Identifier: BSD-3-Clause
 """Commands with the names, arguments and meaning of Workbench's: metric-gradient, metric-estimate-fwhm,
-surface-curvature, surface-geodesic-distance and surface-vertex-areas."""
+cifti-estimate-fwhm, surface-curvature, surface-geodesic-distance and surface-vertex-areas."""
 from __future__ import annotations
 
 import numpy as np
 
 from .. import curvature as measure_curvature
 from .. import distance, estimate_fwhm, gradient, heat
-from ..files import new_data
-from ..files.content import check_output_folder
+from .._voxels import voxel_fwhm
+from ..files import Data, Part, new_data
+from ..files.cifti import open_cifti, word_of_structure
+from ..files.content import check_output_folder, read_content
 from . import common, inputs, values
 from .areas import read_areas, vertex_areas
 from .report import counted, number, number_text
 from .smoothing import SIGMA_TO_FWHM
+from .grayordinates import require_cifti
 from .stages import read, read_surface_for_output, write_new
 from .surfaces import open_surface
 
@@ -70,18 +73,29 @@ def add_metric_estimate_fwhm(commands):
         "is that of `fwhm`.", ["L.midthickness.surf.gii L.residuals.func.gii -whole-file -demean"])
     common.surface_and_data(parser)
     common.region_and_columns(parser)
+    _whole_file(parser)
+
+
+def _whole_file(parser):
     parser.add_argument("-whole-file", action="store_true", help="one estimate for all columns")
     parser.add_argument("-demean", action="store_true", help="subtract the mean of the columns from each of them")
 
 
-def metric_estimate_fwhm(arguments, report):
+def _demeaned(arguments, given):
+    given = given.astype(float)
+    return given - given.mean(axis=1, keepdims=True) if arguments.demean else given
+
+
+def _check_demean(arguments):
     if arguments.demean and not arguments.whole_file:
         raise inputs.ArgumentProblem("-demean without -whole-file; allowed: both")
+
+
+def metric_estimate_fwhm(arguments, report):
+    _check_demean(arguments)
     with report.timed("read"):
         _, data, columns, (patch, *_) = read(arguments)
-    given = patch.values.astype(float)
-    if arguments.demean:
-        given = given - given.mean(axis=1, keepdims=True)
+    given = _demeaned(arguments, patch.values)
     known = ~(patch.excluded | np.isnan(given).any(axis=1))
     with report.timed("compute"):
         found = estimate_fwhm(patch.surface.solver, given, mask=~known)
@@ -92,6 +106,62 @@ def metric_estimate_fwhm(arguments, report):
         return
     for column, width in zip(columns, found.columns):
         report.say(f"column {column + 1} FWHM: {number_text(width)}")
+
+
+def add_cifti_estimate_fwhm(commands):
+    parser = commands.add(
+        "cifti-estimate-fwhm", cifti_estimate_fwhm,
+        "Estimate the smoothness of the structures of a CIFTI file with the arguments of wb_command "
+        "-cifti-estimate-fwhm, and print it in its words: of voxels along the axes of the grid. Unlike there, edges "
+        "of surfaces count with their lengths.",
+        ["residuals.dscalar.nii -whole-file -demean -surface CORTEX_LEFT L.midthickness.surf.gii"], "")
+    parser.add_argument("data", metavar="CIFTI", help="the values, .dscalar.nii or .dtseries.nii")
+    common.hemispheres(parser)
+    common.columns(parser)
+    parser.add_argument("-merged-volume", action="store_true", help="one estimate for the voxels of all structures")
+    _whole_file(parser)
+    parser.set_defaults(fix_zeros=False)
+
+
+def cifti_estimate_fwhm(arguments, report):
+    _check_demean(arguments)
+    with report.timed("read"):
+        file = open_cifti(require_cifti(read_content(arguments.data)))
+        data = Data(file.content.path, "cifti", file.names, [], usual=range(len(file.names)))
+        columns = inputs.choose_columns(data, arguments.column)
+        data.parts = [Part(file.read(columns, [entry.place]).T, entry.vertices, entry.size, entry.name)
+                      for entry in file.structures if entry.vertices is not None]
+        surfaces = inputs.read_surfaces(arguments)
+        patches = inputs.make_patches(surfaces, data, range(len(columns)), arguments)
+    groups = [slice(None)] if arguments.whole_file else [slice(k, k + 1) for k in range(len(columns))]
+    lines = [[] for _ in groups]
+    with report.timed("compute"):
+        for patch in patches:
+            given = _demeaned(arguments, patch.values)
+            absent = patch.excluded | np.isnan(given).any(axis=1)
+            found = estimate_fwhm(patch.surface.solver, given, mask=absent)
+            for line, width in zip(lines, [found.pooled] if arguments.whole_file else found.columns):
+                line.append((word_of_structure(patch.part.structure), [width]))
+        for name, entries in _volumes(file, arguments.merged_volume):
+            given = _demeaned(arguments, file.read(columns, [entry.place for entry in entries]).T)
+            voxels = np.concatenate([entry.voxels for entry in entries])
+            for line, group in zip(lines, groups):
+                line.append((name, voxel_fwhm(voxels, entries[0].affine, given[:, group])))
+    report.facts.update(data=file.content.path, estimates=[
+        {name: [number(width) for width in widths] for name, widths in line} for line in lines])
+    for k, line in enumerate(lines):
+        if not arguments.whole_file:
+            report.say(f"Column {columns[k] + 1}:")
+        for name, widths in line:
+            report.say(f"{name} FWHM: " + ", ".join(map(number_text, widths)))
+
+
+def _volumes(file, merged):
+    """The structures of voxels, each or all together, with their names in Workbench's words."""
+    entries = [entry for entry in file.structures if entry.voxels is not None]
+    if merged and entries:
+        return [("Voxels", entries)]
+    return [(word_of_structure(entry.name), [entry]) for entry in entries]
 
 
 def add_surface_curvature(commands):
