@@ -68,7 +68,6 @@ ResolventPower::ResolventPower(std::shared_ptr<const Assembler> assembler,
   const CornerWeights& coefficients, double step, const Vector& extra, double beta,
   const ParallelFor& parallel)
   : Assembly(std::move(assembler))
-  , Parallel(parallel)
   , Power(IntegerPower(beta))
   , Sum(PolesOfPower(beta, extra.size() > 0 ? extra.maxCoeff() : 0.0))
   , ArePrepared(static_cast<std::size_t>(this->Sum.Poles.size()), false)

@@ -42,7 +42,6 @@ private:
   void Solve(std::size_t pole, const Values& b, Values& x, const ProgressMonitor& progress);
 
   std::shared_ptr<const Assembler> Assembly;
-  const ParallelFor& Parallel;
   int Power; ///< m
   PoleSum Sum;
   std::vector<ImplicitSystem> Systems; ///< of each pole, of which the first one is 1
