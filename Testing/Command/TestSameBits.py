@@ -22,7 +22,8 @@ ONE_STEP = {"time_integrator": "Exponential", "number_of_time_steps": 1}
 
 #: The commands without a row, and what holds them.
 ELSEWHERE = {"cifti-smoothing": "TestWorkbenchCifti", "doctor": "TestDoctor", "path": "TestCommand",
-             "metric-estimate-fwhm": "TestWorkbenchWords", "surface-curvature": "TestWorkbenchWords"}
+             **dict.fromkeys(("metric-estimate-fwhm", "surface-curvature", "metric-dilate", "cifti-dilate",
+                              "cifti-estimate-fwhm"), "TestWorkbenchWords")}
 
 
 def polygons():
