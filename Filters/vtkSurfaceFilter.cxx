@@ -129,7 +129,7 @@ Settings& vtkSurfaceFilter::GetSettings() const
   return this->Private->Properties.Get();
 }
 
-void vtkSurfaceFilter::SetFewestBlocksOnThreads(int blocks)
+void vtkSurfaceFilter::ShareLoopsFrom(int blocks)
 {
   SMPParallelFor::Few = blocks;
 }

@@ -251,7 +251,7 @@ protected:
   SurfaceDiffusion::Settings& GetSettings() const;
 
   /// For tests: loops over fewer blocks of 2048 rows (default: 24) run on one thread.
-  static void SetFewestBlocksOnThreads(int blocks);
+  static void ShareLoopsFrom(int blocks);
 
   ///@{
   /// The bodies of setters and getters, for double, int and bool. A name that no setting of this

@@ -60,7 +60,7 @@ vtkSmartPointer<vtkPolyData> Hills(int n = 224)
 struct ThreadsForAll : vtkSurfaceFilter
 {
   ThreadsForAll() = delete;
-  static void Set(bool all) { SetFewestBlocksOnThreads(all ? 2 : Usual); }
+  static void Set(bool all) { ShareLoopsFrom(all ? 2 : Usual); }
   static constexpr int Usual = 24;
 };
 
