@@ -197,7 +197,7 @@ TEST(CoarseSurfaces, KeepConstants)
 TEST(CoarseSurfaces, GiveTheSameTurned)
 {
   const std::set<std::string> others = { "Turing", "TuringFirstOrder", "TuringCoarseStart",
-    "RandomField", "RandomFieldOfMatern", // noise belongs to coordinates
+    "RandomField", "RandomFieldOfMatern", "RandomFieldRough", // noise belongs to coordinates
     "ArrivalTimeDirected", "Helmholtz", // the directions are not turned here
     // Labels of noise depend on the start, whose noise belongs to coordinates.
     "Segmentation", "SegmentationDefaults", "SegmentationOfCells", "SegmentationOfThree" };
