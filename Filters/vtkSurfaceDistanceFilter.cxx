@@ -93,6 +93,8 @@ bool vtkSurfaceDistanceFilter::FindFields(
   fields.Mask = inputs.Find(1, "MaskArray", 1);
   fields.Direction = inputs.Find(2, "DirectionArray", 3);
   fields.Speeds = inputs.Find(8, "SpeedArray", 1);
+  fields.AlongSpeeds = inputs.Find(11, "AlongSpeedArray", 1);
+  fields.AcrossSpeeds = inputs.Find(12, "AcrossSpeedArray", 1);
   const std::pair<const LocatedArray*, const char*> ofPoints[] = { { &fields.Data, "SourceArray" },
     { &fields.StartTimes, "SourceTimes" } };
   for (const auto& [array, name] : ofPoints)

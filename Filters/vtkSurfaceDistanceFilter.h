@@ -34,8 +34,9 @@
  * | 2 | points or cells | DirectionArray: directions e1, of any length and sign, for AlongSpeed and AcrossSpeed; zero or NaN is none, and the speed there has the geometric mean of both factors |
  * | 8 | points or cells | SpeedArray: the speed of fronts, 0 or more, in coordinate units per unit of time; on points, a triangle has the mean of its corners. Triangles of speed 0 are barriers |
  * | 9 | points | SourceTimes: T_0 of the sources of array 0 |
+ * | 11, 12 | points or cells | AlongSpeedArray and AcrossSpeedArray: factors of the speed along and across array 2, which they need, 0 or more, beside AlongSpeed and AcrossSpeed. Triangles where both are 0, or one of them without a direction, are barriers; where one is 0, it counts as 1/1000 of the other, as does any that is less |
  *
- * Arrays 8 and 9, AlongSpeed and AcrossSpeed need Method Automatic or Eikonal. A source that the mask or a
+ * Arrays 8, 9, 11 and 12, AlongSpeed and AcrossSpeed need Method Automatic or Eikonal. A source that the mask or a
  * barrier excludes, or that no triangle uses, does not count, with a warning; sources of port 1
  * near to excluded triangles do not move to others. Without any source that counts, the update is
  * an error. With MaximumDistance 0 a warning counts the points on port 1 that are farther from the
@@ -128,7 +129,7 @@ public:
    * Factors of the speed along and across the direction, above 0. Default: 1. If they differ, input
    * array 2 is required. With directions e1, and e2 across them in the tangent plane, fronts have
    * D = speed^2 (AlongSpeed^2 e1 e1^T + AcrossSpeed^2 e2 e2^T): from one point in a plane they are
-   * ellipses.
+   * ellipses. Arrays 11 and 12 multiply them.
    */
   SURFACEDIFFUSION_PROPERTY(AlongSpeed, double);
   SURFACEDIFFUSION_PROPERTY(AcrossSpeed, double);

@@ -100,6 +100,8 @@ FieldSummary InputFields::Summarize() const
   summary.Sources = this->Sources != nullptr;
   summary.PathPoints = this->PathPoints != nullptr;
   summary.Speeds = this->Speeds.Values != nullptr;
+  summary.AlongSpeeds = this->AlongSpeeds.Values != nullptr;
+  summary.AcrossSpeeds = this->AcrossSpeeds.Values != nullptr;
   summary.StartTimes = this->StartTimes.Values != nullptr;
   summary.SlopeErrorComponents =
     this->SlopeErrors.Values ? this->SlopeErrors.Values->GetNumberOfComponents() : 0;
@@ -110,15 +112,15 @@ std::vector<vtkDataArray*> InputFields::List() const
 {
   return { this->Data.Values, this->Mask.Values, this->Direction.Values, this->Fixed.Values,
     this->Rates, this->Fidelity.Values, this->Seeds.Values, this->Speeds.Values,
-    this->StartTimes.Values, this->SlopeErrors.Values, this->GlobalIds, this->Between,
-    this->GivenCells };
+    this->AlongSpeeds.Values, this->AcrossSpeeds.Values, this->StartTimes.Values,
+    this->SlopeErrors.Values, this->GlobalIds, this->Between, this->GivenCells };
 }
 
 unsigned int InputFields::Associations() const
 {
   unsigned int bits = 0;
   for (const LocatedArray* const array : { &this->Data, &this->Mask, &this->Direction, &this->Fixed,
-         &this->Fidelity, &this->Seeds, &this->Speeds })
+         &this->Fidelity, &this->Seeds, &this->Speeds, &this->AlongSpeeds, &this->AcrossSpeeds })
   {
     bits = 2 * bits + (array->OnCells ? 1 : 0);
   }
@@ -196,6 +198,8 @@ Fields ReadFields(const InputFields& arrays, const TriangleCells& cells)
   fields.Sources = arrays.Sources;
   fields.PathPoints = arrays.PathPoints;
   fields.Speeds = { ReadFactors(arrays.Speeds.Values), arrays.Speeds.OnCells };
+  fields.AlongSpeeds = { ReadFactors(arrays.AlongSpeeds.Values), arrays.AlongSpeeds.OnCells };
+  fields.AcrossSpeeds = { ReadFactors(arrays.AcrossSpeeds.Values), arrays.AcrossSpeeds.OnCells };
   fields.StartTimes = ReadFactors(arrays.StartTimes.Values);
   if (arrays.SlopeErrors.Values)
   {

@@ -56,6 +56,7 @@ struct InputFields
   std::shared_ptr<const SourceShapes> Sources; ///< in place of Data
   std::shared_ptr<const SourceShapes> PathPoints; ///< of distances
   LocatedArray Speeds; ///< index 8
+  LocatedArray AlongSpeeds, AcrossSpeeds; ///< indices 11 and 12
   LocatedArray StartTimes; ///< index 9, on points
   LocatedArray SlopeErrors; ///< index 10, on points
   vtkDataArray* GlobalIds = nullptr; ///< of the points

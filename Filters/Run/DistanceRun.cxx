@@ -198,7 +198,7 @@ void DistanceRun::Update(const BlockInput& input, Settings& given, const Progres
     : this->FindSources(drawn, fields, settings.MaximumDistance, ofSources);
   const bool haveStarts =
     !fields.StartTimes.empty() || (fields.Sources && !fields.Sources->StartTimes.empty());
-  const bool areTimes = haveStarts || !fields.Speeds.Values.empty() || settings.HasSpeed();
+  const bool areTimes = haveStarts || fields.HasSpeeds() || settings.HasSpeed();
   const DistanceMethod method = this->FindMethod(settings.Method, areTimes, 1.0);
   const double solved = fields.PathPoints ? 0.6 : 0.95;
   GeodesicDistance::Arrival arrival = this->Solve(sources, method, progress.Part(0.3, solved));

@@ -21,56 +21,58 @@ namespace SurfaceDiffusion
 namespace
 {
 
-double SpeedOfTriangle(const Fields& fields, Index row, const Triangles& triangles, Index t)
+/// Of a triangle of the input, whose corners are those of row t.
+double FactorOfTriangle(const Fields& fields, const Located<std::vector<double>>& factors,
+  Index row, const Triangles& triangles, Index t)
 {
-  const std::vector<double>& speeds = fields.Speeds.Values;
-  if (fields.Speeds.OnCells)
+  if (factors.OnCells)
   {
-    return speeds[static_cast<std::size_t>(fields.Cells[static_cast<std::size_t>(row)])];
+    return factors.Values[static_cast<std::size_t>(fields.Cells[static_cast<std::size_t>(row)])];
   }
   double sum = 0.0;
   for (int a = 0; a < 3; ++a)
   {
-    sum += speeds[static_cast<std::size_t>(triangles(t, a))];
+    sum += factors.Values[static_cast<std::size_t>(triangles(t, a))];
   }
   return sum / 3.0;
 }
 
-/// 1 / speed per triangle of InputMesh(); empty without speeds.
-std::vector<double> MakeSlowness(const Surface& surface, const Fields& fields)
+/// Times ofAll, per triangle of InputMesh(), or ofAll for all. Throws InputError on those that are negative
+/// or not finite where they count.
+std::vector<double> FactorsOfTriangles(const Surface& surface, const Fields& fields,
+  const Located<std::vector<double>>& factors, const char* name, double ofAll)
 {
-  std::vector<double> slowness;
-  if (fields.Speeds.Values.empty())
+  if (factors.Values.empty())
   {
-    return slowness;
+    return { ofAll };
   }
+  std::vector<double> found;
   const TriangleMesh& mesh = surface.InputMesh();
   const Triangles triangles = surface.MakeTriangles();
-  std::vector<char> counts(fields.Speeds.Values.size(), 0);
+  std::vector<char> counts(factors.Values.size(), 0);
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
     const Index row = mesh.InputTriangle()[static_cast<std::size_t>(t)];
     const Index ofInput = surface.InputTriangle(row);
-    for (int a = 0; a < 3 && !fields.Speeds.OnCells; ++a)
+    for (int a = 0; a < 3 && !factors.OnCells; ++a)
     {
       counts[static_cast<std::size_t>(triangles(row, a))] = 1;
     }
-    if (fields.Speeds.OnCells)
+    if (factors.OnCells)
     {
       counts[static_cast<std::size_t>(fields.Cells[static_cast<std::size_t>(ofInput)])] = 1;
     }
-    slowness.push_back(1.0 / SpeedOfTriangle(fields, ofInput, triangles, row));
+    found.push_back(ofAll * FactorOfTriangle(fields, factors, ofInput, triangles, row));
   }
   for (std::size_t i = 0; i < counts.size(); ++i)
   {
-    const double speed = fields.Speeds.Values[i];
-    if (counts[i] && !(std::isfinite(speed) && speed >= 0.0))
+    const double factor = factors.Values[i];
+    if (counts[i] && !(std::isfinite(factor) && factor >= 0.0))
     {
-      throw ErrorOfFactor(
-        Word::Array("SpeedArray"), speed, fields.Speeds.OnCells, static_cast<Eigen::Index>(i));
+      throw ErrorOfFactor(Word::Array(name), factor, factors.OnCells, static_cast<Eigen::Index>(i));
     }
   }
-  return slowness;
+  return found;
 }
 
 /// Neighbours of one name get one label: their front is plane, as speeds that change across it want it.
@@ -124,15 +126,21 @@ void JoinNeighbours(
 /// Of InputMesh(); empty without speeds.
 FrontShapes DistanceRun::MakeShapes(const Fields& fields, const DistanceSettings& settings) const
 {
-  if (fields.Speeds.Values.empty() && !settings.HasSpeed())
+  if (!fields.HasSpeeds() && !settings.HasSpeed())
   {
     return {};
   }
-  const TangentVectors directions = settings.IsDirected()
+  const TangentVectors directions = fields.HasDirectedSpeeds() || settings.IsDirected()
     ? MakeInputDirections(*this->Domain, fields, this->Parallel)
     : TangentVectors(0, 2);
-  return MakeFrontShapes(this->Domain->InputMesh(), MakeSlowness(*this->Domain, fields), directions,
-    settings.AlongSpeed, settings.AcrossSpeed);
+  const auto find = [&](const Located<std::vector<double>>& factors, const char* name, double ofAll)
+  { return FactorsOfTriangles(*this->Domain, fields, factors, name, ofAll); };
+  std::vector<double> slowness = find(fields.Speeds, "SpeedArray", 1.0);
+  std::transform(
+    slowness.begin(), slowness.end(), slowness.begin(), [](double speed) { return 1.0 / speed; });
+  return MakeFrontShapes(this->Domain->InputMesh(), slowness, directions,
+    find(fields.AlongSpeeds, "AlongSpeedArray", settings.AlongSpeed),
+    find(fields.AcrossSpeeds, "AcrossSpeedArray", settings.AcrossSpeed));
 }
 
 /// A corner at a point of a triangle that fronts cross; -1: there is none.

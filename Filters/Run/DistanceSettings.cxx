@@ -12,20 +12,22 @@ void DistanceSettings::Visit(SettingVisitor& visitor)
                    "times, and Eikonal otherwise. Exact: the lengths of the shortest ways over the "
                    "triangles. Eikonal: fast marching, fast on large surfaces; also with speeds "
                    "and start times. Heat: the heat method, with smooth level sets.",
-                   "Method=Heat or Method=Exact or (!SpeedArray and !SourceTimes)" },
+                   "Method=Heat or Method=Exact or (!SpeedArray and !AlongSpeedArray and "
+                   "!AcrossSpeedArray and !SourceTimes)" },
     this->Method, { "Heat", "Eikonal", "Exact", "Automatic" });
   visitor.Number({ "MaximumDistance", "coordinates",
                    "The largest distance of points and lines of sources from the surface, in the "
                    "unit of the coordinates: those farther away do not count. 0: any distance." },
     this->MaximumDistance, SettingRange::NonNegative());
   visitor.Number({ "AlongSpeed", "",
-                   "Factor of the speed of fronts along the direction, above 0. If it differs from "
-                   "AcrossSpeed, DirectionArray is required.",
+                   "Factor of the speed of fronts along the direction, above 0, beside that of "
+                   "AlongSpeedArray. If it differs from AcrossSpeed, DirectionArray is required.",
                    "(DirectionArray and (Method=Eikonal or Method=Automatic)) or AlongSpeed!=1" },
     this->AlongSpeed, SettingRange::Positive());
-  visitor.Number(
-    { "AcrossSpeed", "", "Factor of the speed of fronts across the direction, above 0.",
-      "(DirectionArray and (Method=Eikonal or Method=Automatic)) or AcrossSpeed!=1" },
+  visitor.Number({ "AcrossSpeed", "",
+                   "Factor of the speed of fronts across the direction, above 0, beside that of "
+                   "AcrossSpeedArray.",
+                   "(DirectionArray and (Method=Eikonal or Method=Automatic)) or AcrossSpeed!=1" },
     this->AcrossSpeed, SettingRange::Positive());
   visitor.Switch({ "ComputeGradient", "",
                    "On: the gradient of the result is added, vectors in the tangent planes that "
@@ -36,7 +38,7 @@ void DistanceSettings::Visit(SettingVisitor& visitor)
       "On: the distance is that to the boundary of the region of the sources, between "
       "them and the points around it, and below 0 within. To closed lines it is below 0 on the "
       "smaller side.",
-      "!SpeedArray and !SourceTimes" },
+      "!SpeedArray and !AlongSpeedArray and !AcrossSpeedArray and !SourceTimes" },
     this->Signed);
   VisitMerging(visitor, this->MergeCoincidentPoints, this->MergeTolerance);
 }
@@ -66,12 +68,24 @@ void DistanceSettings::Check(const FieldSummary* fields, Problems& problems)
       problems);
   };
   requireFronts(fields->Speeds, Sentence(Word::Array("SpeedArray")));
+  for (const auto& [has, name] : { std::pair(fields->AlongSpeeds, "AlongSpeedArray"),
+         std::pair(fields->AcrossSpeeds, "AcrossSpeedArray") })
+  {
+    requireFronts(has, Sentence(Word::Array(name)));
+    if (has && !fields->Directions)
+    {
+      problems.push_back(Sentence(Word::Array(name))
+        << " is set but " << Word::Array("DirectionArray")
+        << " is not; allowed: together with an array of directions");
+    }
+  }
   requireFronts(fields->StartTimes, Sentence(Word::Array("SourceTimes")));
   requireFronts(this->HasSpeed(),
     Sentence(Word::Setting("AlongSpeed"))
       << " " << this->AlongSpeed << " and " << Word::Setting("AcrossSpeed") << " "
       << this->AcrossSpeed);
-  const bool areTimes = fields->Speeds || fields->StartTimes || this->HasSpeed();
+  const bool areTimes = fields->Speeds || fields->AlongSpeeds || fields->AcrossSpeeds ||
+    fields->StartTimes || this->HasSpeed();
   Require(!this->Signed || !areTimes, Sentence(Word::Setting("Signed")),
     Word::SwitchNumber(this->Signed),
     Sentence(Word::SwitchNumber(false)) << " together with speeds and start times", problems);

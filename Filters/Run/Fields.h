@@ -58,7 +58,8 @@ struct Fields
   std::shared_ptr<const std::vector<ProjectedSample>> Projected; ///< of ProjectSamples()
   /// Of distances. In place of Data; null if there are none.
   std::shared_ptr<const SourceShapes> Sources;
-  Located<std::vector<double>> Speeds; ///< per point or cell; may be empty
+  /// Per point or cell; may be empty. Those along and across Directions are factors of Speeds.
+  Located<std::vector<double>> Speeds, AlongSpeeds, AcrossSpeeds;
   std::vector<double> StartTimes; ///< per point; may be empty
   /// Standard errors of the slopes of Data, which are times: per point, a column per component, in the unit
   /// of the data per unit of the coordinates, NaN where unknown; no row if there are none.
@@ -81,10 +82,17 @@ struct Fields
     return (inpaint && IsSet(this->Mask.Values, row)) || IsSet(this->Weightless, row);
   }
 
+  bool HasDirectedSpeeds() const
+  {
+    return !this->AlongSpeeds.Values.empty() || !this->AcrossSpeeds.Values.empty();
+  }
+  bool HasSpeeds() const { return !this->Speeds.Values.empty() || this->HasDirectedSpeeds(); }
+
   bool HasCells() const
   {
     return this->Data.OnCells || this->Mask.OnCells || this->Fixed.OnCells ||
-      this->FidelityFactors.OnCells || this->Seeds.OnCells || this->Speeds.OnCells;
+      this->FidelityFactors.OnCells || this->Seeds.OnCells || this->Speeds.OnCells ||
+      this->AlongSpeeds.OnCells || this->AcrossSpeeds.OnCells;
   }
 };
 

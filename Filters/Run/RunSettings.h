@@ -53,7 +53,7 @@ struct FieldSummary
   bool Rates = false;
   bool DataAreTerms = false; ///< the data are the data terms of a segmentation, one per region
   bool Sources = false; ///< points or lines, in place of data
-  bool Speeds = false;
+  bool Speeds = false, AlongSpeeds = false, AcrossSpeeds = false;
   bool StartTimes = false;
   int SlopeErrorComponents = 0; ///< 0: there are no errors of slopes
   bool PathPoints = false;

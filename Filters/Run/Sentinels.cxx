@@ -139,6 +139,10 @@ std::vector<Asked> ListNumbers(
     "DirectionArray", Map(fields.Directions.Values), Place::PerTriangle, fields.Directions.OnCells);
   addLocated("DiffusionRateArray", Map(fields.Rates), Place::PerTriangle, true);
   addLocated("SpeedArray", Map(fields.Speeds.Values), Place::PerCell, fields.Speeds.OnCells);
+  addLocated(
+    "AlongSpeedArray", Map(fields.AlongSpeeds.Values), Place::PerCell, fields.AlongSpeeds.OnCells);
+  addLocated("AcrossSpeedArray", Map(fields.AcrossSpeeds.Values), Place::PerCell,
+    fields.AcrossSpeeds.OnCells);
   const std::vector<double>& times =
     fields.Sources ? fields.Sources->StartTimes : fields.StartTimes;
   std::vector<char> areSources = all(times.size());
@@ -207,6 +211,10 @@ Sentence AboutNoValue(const std::string& array)
   if (array == "DiffusionRateArray")
   {
     return text << "the rate of its neighbours in its place";
+  }
+  if (array == "AlongSpeedArray" || array == "AcrossSpeedArray")
+  {
+    return text << "the speed of its neighbours in its place";
   }
   if (array == "SourceTimes")
   {

@@ -23,7 +23,8 @@ const std::map<std::string, std::string> NamesOfArrays = { { "InputArray", "Data
   { "DataTermArray", "Data" }, { "MaskArray", "Mask" }, { "DirectionArray", "Directions" },
   { "FixedArray", "Fixed" }, { "DiffusionRateArray", "Rates" },
   { "FidelityArray", "FidelityFactors" }, { "SeedArray", "Seeds" }, { "CreaseArray", "Seeds" },
-  { "SourceArray", "Data" }, { "SpeedArray", "Speeds" }, { "SourceTimes", "StartTimes" },
+  { "SourceArray", "Data" }, { "SpeedArray", "Speeds" }, { "AlongSpeedArray", "AlongSpeeds" },
+  { "AcrossSpeedArray", "AcrossSpeeds" }, { "SourceTimes", "StartTimes" },
   { "SlopeErrorArray", "SlopeErrors" } };
 
 /// work(), whose errors are in the words of this interface.
@@ -88,6 +89,8 @@ public:
       "FidelityFactors", fields.FidelityFactors.Values.size(), fields.FidelityFactors.OnCells);
     require("Seeds", fields.Seeds.Values.size(), fields.Seeds.OnCells);
     require("Speeds", fields.Speeds.Values.size(), fields.Speeds.OnCells);
+    require("AlongSpeeds", fields.AlongSpeeds.Values.size(), fields.AlongSpeeds.OnCells);
+    require("AcrossSpeeds", fields.AcrossSpeeds.Values.size(), fields.AcrossSpeeds.OnCells);
     require("StartTimes", fields.StartTimes.size(), false);
     require("SlopeErrors", rowsOf(fields.SlopeErrors), false);
     const auto faces = static_cast<std::size_t>(triangles.rows());
@@ -135,6 +138,8 @@ public:
     summary.Sources = this->Data.Sources != nullptr;
     summary.PathPoints = this->Data.PathPoints != nullptr;
     summary.Speeds = !this->Data.Speeds.Values.empty();
+    summary.AlongSpeeds = !this->Data.AlongSpeeds.Values.empty();
+    summary.AcrossSpeeds = !this->Data.AcrossSpeeds.Values.empty();
     summary.StartTimes = !this->Data.StartTimes.empty();
     summary.SlopeErrorComponents = static_cast<int>(this->Data.SlopeErrors.cols());
     return summary;

@@ -241,6 +241,8 @@ FieldSummary PythonFields::Summarize() const
   summary.Sources = this->Sources != nullptr;
   summary.PathPoints = this->PathPoints != nullptr;
   summary.Speeds = this->Find("speeds") != nullptr;
+  summary.AlongSpeeds = this->Find("along_speeds") != nullptr;
+  summary.AcrossSpeeds = this->Find("across_speeds") != nullptr;
   summary.StartTimes =
     this->Find("start_times") || (this->Sources && !this->Sources->StartTimes.empty());
   if (const InputArray* const errors = this->Find("slope_errors"))
@@ -307,6 +309,8 @@ Fields PythonFields::Read() const
   fields.Sources = this->Sources;
   fields.PathPoints = this->PathPoints;
   fields.Speeds = this->Read<double>("speeds");
+  fields.AlongSpeeds = this->Read<double>("along_speeds");
+  fields.AcrossSpeeds = this->Read<double>("across_speeds");
   fields.StartTimes = this->Read<double>("start_times").Values;
   if (const InputArray* const errors = this->Find("slope_errors"))
   {

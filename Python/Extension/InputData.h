@@ -119,8 +119,8 @@ public:
   }
 
   /// kind: "data" and "slope_errors" (rows x columns), "directions" (rows x 3), and "rates" (faces x 4), float64 but for
-  /// the data; "mask", "fixed", and "between", uint8; "fidelity", "seeds", "speeds", and "start_times",
-  /// float64; "ids" and "given_faces", int64. name: for messages; may be empty.
+  /// the data; "mask", "fixed", and "between", uint8; "fidelity", "seeds", "speeds", "along_speeds",
+  /// "across_speeds", and "start_times", float64; "ids" and "given_faces", int64. name: for messages; may be empty.
   void Set(const std::string& kind, InputArray array, bool onFaces, const std::string& name = {});
 
   std::shared_ptr<const InputSurface> Surface;

@@ -42,8 +42,8 @@ def distance(
     start: ArrayLike | None = None,
     speed: ArrayLike | None = None,
     directions: ArrayLike | None = None,
-    along_speed: float = 1.0,
-    across_speed: float = 1.0,
+    along_speed: float | ArrayLike = 1.0,
+    across_speed: float | ArrayLike = 1.0,
     mask: ArrayLike | None = None,
     roi: ArrayLike | None = None,
     method: str = "Automatic",
@@ -81,8 +81,10 @@ def distance(
     directions : array_like, shape (n, 3) or (m, 3), optional
         Directions e1 at points or on faces, of any length and sign; zero or NaN is none, and fronts
         have the geometric mean of both speeds there.
-    along_speed, across_speed : float, above 0, default 1
-        Factors of the speed along the directions and across them.
+    along_speed, across_speed : float, above 0, or array_like, shape (m,) or (n,), 0 or more, default 1
+        Factors of the speed along the directions and across them. Faces where both are 0, or one of
+        them without a direction, are barriers. A factor below a thousandth of the other one counts as
+        that: where only one of them is 0, fronts all but do not cross in its direction.
     mask : array_like, shape (n,) or (m,), optional
         Nonzero leaves a point with its faces, or a face, out: a barrier, too.
     roi : array_like, shape (n,) or (m,), optional
@@ -152,8 +154,8 @@ def nearest_sources(
     start: ArrayLike | None = None,
     speed: ArrayLike | None = None,
     directions: ArrayLike | None = None,
-    along_speed: float = 1.0,
-    across_speed: float = 1.0,
+    along_speed: float | ArrayLike = 1.0,
+    across_speed: float | ArrayLike = 1.0,
     mask: ArrayLike | None = None,
     roi: ArrayLike | None = None,
     method: str = "Automatic",
@@ -190,8 +192,9 @@ maximum_distance, signed, merge_coincident_points, merge_tolerance, progress, re
     given = as_surface(surface)
     marked, rows, places = _as_sources(given, sources)
     times = _as_times(start, len(rows if places is None else places))
+    factors, arrays = _split_factors(along_speed=along_speed, across_speed=across_speed)
     surface, carried, fine = take_along(given, "distance", refine_to, maximum_number_of_triangles, {
-        "mask": mask, "roi": roi, "speed": speed, "directions": directions})
+        "mask": mask, "roi": roi, "speed": speed, "directions": directions, **arrays})
     names = rows if marked else np.arange(len(rows if places is None else places))
     if fine is not None and places is None:  # between two sources is one
         of_points = np.zeros((2, given.n_points))
@@ -215,9 +218,8 @@ maximum_distance, signed, merge_coincident_points, merge_tolerance, progress, re
     inputs = _make_input(surface, **carried)
     inputs.core.set_sources(places, segments, None, rows, times)
     outputs, _ = run_once("distance", inputs, {
-        "method": method, "along_speed": along_speed, "across_speed": across_speed,
-        "maximum_distance": maximum_distance, "signed": signed, "merge_coincident_points": merge_coincident_points,
-        "merge_tolerance": merge_tolerance}, _ARRAYS, progress)
+        "method": method, **factors, "maximum_distance": maximum_distance, "signed": signed,
+        "merge_coincident_points": merge_coincident_points, "merge_tolerance": merge_tolerance}, _ARRAYS, progress)
     found = {output.name: output.values for output in outputs}
     source = found["NearestSource"].astype(np.int64)
     source = np.where(source < 0, -1, names[source])
@@ -235,8 +237,8 @@ def distances(
     cutoff: float = np.inf,
     speed: ArrayLike | None = None,
     directions: ArrayLike | None = None,
-    along_speed: float = 1.0,
-    across_speed: float = 1.0,
+    along_speed: float | ArrayLike = 1.0,
+    across_speed: float | ArrayLike = 1.0,
     mask: ArrayLike | None = None,
     roi: ArrayLike | None = None,
     method: str = "Automatic",
@@ -291,10 +293,11 @@ progress
         _, rows, places = _as_sources(surface, sources)
         if places is not None:
             raise ValueError(f"sources is {shorten(sources)}; allowed: rows of points, or flags")
+    factors, arrays = _split_factors(along_speed=along_speed, across_speed=across_speed)
     entries = find_each(surface, rows, cutoff, {
-        "method": method, "along_speed": along_speed, "across_speed": across_speed,
-        "merge_coincident_points": merge_coincident_points, "merge_tolerance": merge_tolerance}, progress,
-        mask=mask, roi=roi, speed=speed, directions=directions)
+        "method": method, **factors, "merge_coincident_points": merge_coincident_points,
+        "merge_tolerance": merge_tolerance}, progress, mask=mask, roi=roi, speed=speed, directions=directions,
+        **arrays)
     found = sparse.csr_array(entries, shape=(len(entries[2]) - 1, surface.n_points))
     return found if rows is not None else _means_with_transposed(found)
 
@@ -333,14 +336,23 @@ def _means_with_transposed(matrix: Any) -> Any:
 
 
 #: The keywords of input arrays, by their names in messages.
-_ARRAYS = {**ARRAYS, "SourceArray": "sources", "SourceTimes": "start", "SpeedArray": "speed"}
+_ARRAYS = {**ARRAYS, "SourceArray": "sources", "SourceTimes": "start", "SpeedArray": "speed",
+           "AlongSpeedArray": "along_speed", "AcrossSpeedArray": "across_speed"}
 
 
-def _make_input(surface: Surface, *, mask: Any, roi: Any, speed: Any, directions: Any) -> Input:
+def _split_factors(**given: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The numbers, and the arrays."""
+    arrays = {name: values for name, values in given.items() if _count_axes(values) > 0}
+    return {name: value for name, value in given.items() if name not in arrays}, arrays
+
+
+def _make_input(surface: Surface, *, mask: Any, roi: Any, directions: Any, **speeds: Any) -> Input:
+    """speeds: speed, along_speed and across_speed, those that are arrays."""
     inputs = Input(surface, mask=left_out(mask, roi, surface), directions=directions)
-    if speed is not None:
-        on_faces = find_place("speed", speed, (surface.n_points, surface.n_faces), "number", False)
-        inputs.core.set("speeds", as_factors("speed", speed), on_faces)
+    for name, values in speeds.items():
+        if values is not None:
+            on_faces = find_place(name, values, (surface.n_points, surface.n_faces), "number", False)
+            inputs.core.set(name + "s", as_factors(name, values), on_faces)
     return inputs
 
 

@@ -249,7 +249,8 @@ ESTIMATING = ("heat", "intrinsic_tv", "mumford_shah", "interpolate")
 
 #: The arguments with rows of points or faces. The first are where on_faces says, if it is given.
 _DATA = ("values", "terms", "vectors")
-_ROWS = ("initial", "mask", "roi", "directions", "fixed", "fidelity", "seeds", "rates", "hints", "speed")
+_ROWS = ("initial", "mask", "roi", "directions", "fixed", "fidelity", "seeds", "rates", "hints", "speed",
+         "along_speed", "across_speed")
 
 
 def take_along(

@@ -268,17 +268,18 @@ def curvature(
 
 def distance(
     mesh: Any, sources: Any, *, speed: str | None = None, direction: str | None = None,
-    along_speed: float = 1.0, across_speed: float = 1.0, mask: str | None = None, roi: str | None = None,
-    method: str = "Automatic", progress: Progress = False, result_array_name: str | None = None,
-    **properties: Any,
+    along_speed: float | str = 1.0, across_speed: float | str = 1.0, mask: str | None = None,
+    roi: str | None = None, method: str = "Automatic", progress: Progress = False,
+    result_array_name: str | None = None, **properties: Any,
 ) -> Any:
     """Compute the distance along the mesh from the nearest source, or with speeds the time at which
     fronts arrive.
 
     sources: the name of a point array, whose nonzero points are the sources; or numbers of points; or a
     data set or an array (k, 3), whose points stand for the nearest places of the mesh, in each block of a
-    MultiBlock. With signed=True they are a region, or places along a closed curve. speed: point or cell array. direction: point or cell array with three components, for
-    along_speed and across_speed. mask, roi: point or cell array; points and cells with a nonzero value,
+    MultiBlock. With signed=True they are a region, or places along a closed curve. speed: point or cell
+    array. direction: point or cell array with three components, for along_speed and across_speed, numbers
+    or names of point or cell arrays. mask, roi: point or cell array; points and cells with a nonzero value,
     or with 0, are left out. All other keywords are those of surfacediffusion.distance. The results are the
     point arrays Distance, with speeds ArrivalTime, which becomes active, and NearestSource: the value of the
     array at the nearest source, or the number of the point. Points that no way reaches have inf, and 0 or
@@ -290,6 +291,8 @@ def distance(
     for block in blocks:
         arrays = {"directions": block.find("direction", direction), "along_speed": along_speed,
                   "across_speed": across_speed, **block.find_all(speed=speed, mask=mask, roi=roi)}
+        arrays.update(block.find_all(
+            **{name: value for name, value in arrays.items() if isinstance(value, str)}))
         rows = given
         if isinstance(sources, str):
             marks = np.asarray(block.find("sources", sources, faces=False))

@@ -32,6 +32,12 @@ std::shared_ptr<const SourceShapes> Shapes(
   return shapes;
 }
 
+Eigen::RowVector3d MiddleOf(const Shape& s, const Eigen::RowVector3i& corners)
+{
+  return (s.Vertices.row(corners[0]) + s.Vertices.row(corners[1]) + s.Vertices.row(corners[2])) /
+    3.0;
+}
+
 Solution From(const Shape& s, const std::shared_ptr<const SourceShapes>& sources,
   DistanceMethod method = DistanceMethod::Eikonal, bool gradient = false)
 {
@@ -220,9 +226,7 @@ TEST(DistanceRun, OfTwoSpeedsAddsUpAcrossThem)
   }
   for (const auto& corners : strip.Faces.rowwise())
   {
-    const double x = (strip.Vertices(corners[0], 0) + strip.Vertices(corners[1], 0) +
-                       strip.Vertices(corners[2], 0)) /
-      3.0;
+    const double x = MiddleOf(strip, corners)[0];
     data.Speeds.Values.push_back(x < 2.0 ? 0.5 : 4.0);
   }
   const Solution found = From(strip, side, data);
@@ -371,6 +375,118 @@ TEST(DistanceRun, WithoutADirectionHasTheMeanOfBothSpeeds)
     "0.25");
 }
 
+TEST(DistanceRun, SpeedsAlongAndAcrossPerCellOrPointAreTheNumbersWhereTheyAreConstant)
+{
+  const Shape s = Jittered(Plate(12, 1.0), 0.03, -0.99, 0.99, -0.99, 0.99);
+  const auto rows = [&](bool onCells)
+  { return static_cast<std::size_t>(onCells ? s.Faces.rows() : s.Vertices.rows()); };
+  for (const auto& [along, across] : { std::pair(4.0, 0.5), std::pair(2.0, 2.0) })
+  {
+    for (const bool onCells : { false, true })
+    {
+      SurfaceData data;
+      data.Sources = Shapes({ { 0.123, 0.271, 0.0 }, { -0.5, -0.4, 0.0 } });
+      data.Speeds.Values.assign(rows(false), 0.25);
+      data.Directions.Values = Points::Random(s.Vertices.rows(), 3);
+      DistanceSettings settings;
+      settings.AlongSpeed = along;
+      settings.AcrossSpeed = across;
+      const Values numbers = Distance(s.Vertices, s.Faces, data, settings).Result;
+      settings.AlongSpeed = 1.0;
+      settings.AcrossSpeed = 0.5 * across; // a product, and a speed that only one of them has
+      data.AlongSpeeds = { std::vector<double>(rows(onCells), along), onCells };
+      data.AcrossSpeeds = { std::vector<double>(rows(onCells), 2.0), onCells };
+      const Solution arrays = Distance(s.Vertices, s.Faces, data, settings);
+      EXPECT_EQ(arrays.Result, numbers) << along << onCells;
+      EXPECT_EQ(arrays.Arrays.count("ArrivalTime"), 1U);
+    }
+  }
+}
+
+// Of two layers with fibres along x, straight lines of which meet where the time is least.
+TEST(DistanceRun, OfFibresInTwoLayersIsRefracted)
+{
+  double errors[2];
+  for (const Index cells : { 40, 80 })
+  {
+    const Shape s = Jittered(Strip(2 * cells, cells, 4.0, 2.0), 0.3 / cells, 0.01, 1.9, 0.01, 1.99);
+    SurfaceData data;
+    const Eigen::RowVector3d place(1.013, 0.971, 0.0);
+    data.Sources = Shapes({ place });
+    data.Directions.OnCells = data.AlongSpeeds.OnCells = data.AcrossSpeeds.OnCells = true;
+    data.Directions.Values = Eigen::RowVector3d(1.0, 0.0, 0.0).replicate(s.Faces.rows(), 1);
+    for (const auto& corners : s.Faces.rowwise())
+    {
+      const bool isFirst = MiddleOf(s, corners)[0] < 2.0;
+      data.AlongSpeeds.Values.push_back(isFirst ? 0.6 : 1.2);
+      data.AcrossSpeeds.Values.push_back(isFirst ? 0.3 : 0.8);
+    }
+    const Solution found = Distance(s.Vertices, s.Faces, data, {});
+    double& error = errors[cells == 40 ? 0 : 1];
+    error = 0.0;
+    Index counted = 0;
+    for (Index i = 0; i < s.NumberOfVertices(); ++i)
+    {
+      const Eigen::RowVector3d x = s.Vertices.row(i);
+      if (x[0] < 2.0)
+      {
+        continue; // some are reached through the other layer first
+      }
+      double exact = Never;
+      for (double y = 0.0; y <= 2.0; y += 1e-3)
+      {
+        exact = std::min(exact,
+          std::hypot((2.0 - place[0]) / 0.6, (y - place[1]) / 0.3) +
+            std::hypot((x[0] - 2.0) / 1.2, (x[1] - y) / 0.8));
+      }
+      error += std::abs(found.Result(i, 0) - exact) / exact;
+      ++counted;
+    }
+    error /= counted;
+    EXPECT_GT(counted, 1000);
+  }
+  EXPECT_LT(errors[0], 0.01);
+  EXPECT_LT(errors[1], 0.005);
+}
+
+// A line of triangles where both factors are 0, around which ellipses go, and one where one is 0.
+TEST(DistanceRun, FactorsOfZeroAreBarriersAndSlowInOneDirection)
+{
+  const Shape strip = Strip(40, 20, 4.0, 2.0);
+  SurfaceData data;
+  data.Directions.OnCells = data.AlongSpeeds.OnCells = data.AcrossSpeeds.OnCells = true;
+  data.Directions.Values = Eigen::RowVector3d(1.0, 0.0, 0.0).replicate(strip.Faces.rows(), 1);
+  std::vector<char> isLine;
+  for (const auto& corners : strip.Faces.rowwise())
+  {
+    const Eigen::RowVector3d middle = MiddleOf(strip, corners);
+    isLine.push_back(std::abs(middle[0] - 2.05) < 0.05 && middle[1] > 0.5);
+    data.AlongSpeeds.Values.push_back(isLine.back() ? 0.0 : 2.0);
+    data.AcrossSpeeds.Values.push_back(isLine.back() ? 0.0 : 1.0);
+  }
+  const auto time = [&] // from (1, 1.5) to (3, 1.5)
+  {
+    return From(strip, { { 41 * 15 + 10, 1.0 } }, data).Result(41 * 15 + 30, 0);
+  };
+  const double around = std::hypot(0.5, 1.0) + 0.05 + std::hypot(0.45, 1.0);
+  EXPECT_NEAR(time(), around, 1e-12);
+  for (std::size_t t = 0; t < isLine.size(); ++t)
+  {
+    data.AcrossSpeeds.Values[t] = 1.0; // fronts go up and down within it
+  }
+  EXPECT_NEAR(time(), around, 0.01 * around);
+  for (std::size_t t = 0; t < isLine.size(); ++t)
+  {
+    data.AlongSpeeds.Values[t] = 2.0;
+    data.AcrossSpeeds.Values[t] = isLine[t] ? 0.0 : 1.0; // fronts go along it
+  }
+  EXPECT_NEAR(time(), 1.0, 0.01);
+  data.Directions.Values.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const double without = time(); // a barrier, too
+  EXPECT_GT(without, 1.5);
+  EXPECT_LT(without, 1.01 * (std::hypot(1.0, 1.0) + 0.1 + std::hypot(0.9, 1.0)) / std::sqrt(2.0));
+}
+
 // A barrier of speed 0, and the same one as a mask: ways go around its free end.
 TEST(DistanceRun, GoesAroundBarriersOfSpeedZeroAndOfMasks)
 {
@@ -381,10 +497,7 @@ TEST(DistanceRun, GoesAroundBarriersOfSpeedZeroAndOfMasks)
   masked.Mask.OnCells = true;
   for (const auto& corners : strip.Faces.rowwise())
   {
-    const Eigen::RowVector3d middle =
-      (strip.Vertices.row(corners[0]) + strip.Vertices.row(corners[1]) +
-        strip.Vertices.row(corners[2])) /
-      3.0;
+    const Eigen::RowVector3d middle = MiddleOf(strip, corners);
     const bool isBarrier = std::abs(middle[0] - 2.05) < 0.05 && middle[1] > 0.5;
     slow.Speeds.Values.push_back(isBarrier ? 0.0 : 1.0);
     masked.Mask.Values.push_back(isBarrier ? 1 : 0);
@@ -403,9 +516,7 @@ TEST(DistanceRun, GoesAroundBarriersOfSpeedZeroAndOfMasks)
   for (std::size_t t = 0; t < slow.Speeds.Values.size(); ++t)
   {
     const auto corners = strip.Faces.row(static_cast<Eigen::Index>(t));
-    const double x = (strip.Vertices(corners[0], 0) + strip.Vertices(corners[1], 0) +
-                       strip.Vertices(corners[2], 0)) /
-      3.0;
+    const double x = MiddleOf(strip, corners)[0];
     slow.Speeds.Values[t] = std::abs(x - 2.05) < 0.05 ? 0.0 : 1.0;
   }
   const Solution closed = From(strip, { { source, 7.0 } }, slow);

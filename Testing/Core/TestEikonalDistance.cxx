@@ -48,7 +48,7 @@ public:
         directions.row(t) << std::cos(angle), std::sin(angle);
       }
       this->Shapes = MakeFrontShapes(*this->Mesh, slowness,
-        ofDirections == 1.0 ? TangentVectors(0, 2) : directions, ofDirections, 1.0);
+        ofDirections == 1.0 ? TangentVectors(0, 2) : directions, { ofDirections }, { 1.0 });
     }
     this->Solver = std::make_unique<EikonalDistance>(
       this->Mesh, this->Delaunay, positions, this->Shapes, SerialFor(), ProgressMonitor());

@@ -56,7 +56,7 @@ Found Find(const Surface& s, const std::vector<Start>& starts,
   }
   const GeodesicDistance fronts(mesh,
     ofMesh.empty() ? FrontShapes()
-                   : MakeFrontShapes(*mesh, ofMesh, TangentVectors(0, 2), 1.0, 1.0));
+                   : MakeFrontShapes(*mesh, ofMesh, TangentVectors(0, 2), { 1.0 }, { 1.0 }));
   const auto arrival = nearest ? fronts.FindNearest(sources) : fronts.Find(sources, cutoff / unit);
   Found found{ std::vector<double>(vertexOf.size(), Never),
     std::vector<Index>(vertexOf.size(), -1) };
@@ -158,7 +158,7 @@ TEST(GeodesicDistance, OfVeryDifferentSpeedsByDirectionEnds)
   }
   const TangentVectors ofMesh =
     TangentVectorsFromTriangleVectors(*mesh, torus.Vertices, torus.Faces, directions);
-  const GeodesicDistance fronts(mesh, MakeFrontShapes(*mesh, {}, ofMesh, 8.0, 0.5));
+  const GeodesicDistance fronts(mesh, MakeFrontShapes(*mesh, {}, ofMesh, { 8.0 }, { 0.5 }));
   const auto arrival = fronts.Find({ { 5, 0.0, 0, 0, 0.0 } }, Never);
   for (const double time : arrival.Times)
   {

@@ -59,6 +59,34 @@ class Distance(unittest.TestCase):
         masked = sd.distance(surface, 0, mask=speed == 0)
         np.testing.assert_array_equal(np.isfinite(masked), np.isfinite(found))
 
+    def test_speeds_along_and_across_fibres_may_be_arrays(self):
+        points, faces = grid(40)
+        surface = (points, np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]]))
+        m, ones = len(surface[1]), np.ones(len(surface[1]))
+        fibre = np.array([np.cos(0.6), np.sin(0.6), 0.0])
+        fibres, place = np.tile(fibre, (m, 1)), np.array([[0.51, 0.47, 0.0]])
+        offset = points - place
+        across = np.array([-fibre[1], fibre[0], 0.0])
+        exact = np.hypot(offset @ fibre / 0.6, offset @ across / 0.3)
+        numbers = sd.distance(surface, place, directions=fibres, along_speed=0.6, across_speed=0.3)
+        np.testing.assert_allclose(numbers, exact, rtol=1e-12)
+        for along, across in ((0.6 * ones, 0.3 * ones), (0.6, 0.3 * ones), (0.6 * ones, 0.3)):
+            given = {"directions": fibres, "along_speed": along, "across_speed": across}
+            np.testing.assert_array_equal(sd.distance(surface, place, **given), numbers)
+        fine = sd.distance(surface, place, refine_to=0.02, **given)
+        np.testing.assert_allclose(fine[:len(points)], exact, rtol=1e-10)
+        # a line of block, but for a gap: fronts go around its end
+        x, y = points[surface[1]].mean(axis=1)[:, :2].T
+        fibres = np.tile([0.0, 1.0, 0.0], (m, 1))
+        speed = np.where((np.abs(x - 0.5125) < 0.0125) & (y > 0.25), 0.0, 1.0)
+        target = int(np.argmin(np.linalg.norm(points - [0.8, 0.75, 0.0], axis=1)))
+        found = sd.distance(surface, [[0.2, 0.75, 0.0]], directions=fibres, along_speed=speed, across_speed=speed / 2)
+        around = np.hypot(0.5, 0.6) + 0.05 + np.hypot(0.5, 0.55)
+        self.assertAlmostEqual(found[target], around, 12)
+        speed[np.abs(x - 0.5125) < 0.0125] = 0.0
+        closed = sd.distance(surface, [[0.2, 0.75, 0.0]], directions=fibres, along_speed=speed, across_speed=speed)
+        np.testing.assert_array_equal(np.isinf(closed), points[:, 0] > 0.52)
+
     def test_places_are_within_triangles(self):
         points, faces = grid(12)
         triangles = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
@@ -96,6 +124,8 @@ class Distance(unittest.TestCase):
         for row, source in zip(found.toarray(), (7, 90)):
             np.testing.assert_array_equal(
                 row, sd.distance(surface, source, directions=east, along_speed=4.0))
+        found_of_arrays = sd.distances(surface, [7, 90], directions=east, along_speed=np.full(1280, 4.0))
+        np.testing.assert_array_equal(found_of_arrays.toarray(), found.toarray())
 
     def test_surfaces_keep_factors_for_other_sources_and_not_for_other_masks(self):
         surface, inside = sd.sphere(3), np.arange(642) < 600
@@ -196,6 +226,12 @@ class Distance(unittest.TestCase):
             "along_speed is 0; allowed: finite numbers above 0": dict(sources=1, along_speed=0),
             "along_speed is 2 and across_speed is 1 but directions is not set": dict(
                 sources=1, along_speed=2),
+            "along_speed is -1 at face 3; allowed: finite numbers, 0 or more": dict(
+                sources=1, directions=np.ones((42, 3)), along_speed=np.where(np.arange(80) == 3, -1.0, 2.0)),
+            r"across_speed has shape \(5,\); allowed: \(42,\)": dict(sources=1, across_speed=np.ones(5)),
+            "across_speed is set but directions is not": dict(sources=1, across_speed=np.ones(80)),
+            "method is Exact; allowed: Eikonal or Automatic together with across_speed": dict(
+                sources=1, method="exact", directions=np.ones((42, 3)), across_speed=np.ones(80)),
             "directions is infinite at point 0": dict(
                 sources=1, along_speed=2, directions=np.full((42, 3), np.inf)),
             "method is Heat; allowed: Eikonal or Automatic together with along_speed": dict(

@@ -99,6 +99,7 @@ class AsManyPointsAsCells(unittest.TestCase):
                 (distance, ([100],), {"speed": "speed"}),
                 (distance, ([200],), {"mask": "part"}),
                 (distance, ([100],), {"direction": "around", "along_speed": 3.0}),
+                (distance, ([100],), {"direction": "around", "along_speed": "speed", "across_speed": 2.0}),
                 (random_field, (), {"fwhm": 1.5, "mask": "part"}),
                 (scale_filter, ("p",), {"wavelength": 3.0, "mask": "part"}),
                 (surrogates, ("p", 3), {"roi": "part"})):

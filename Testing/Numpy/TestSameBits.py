@@ -31,11 +31,13 @@ if not VTK_PYTHON:
 
 #: Index of each input array of the filters.
 INDEX = {"values": 0, "vectors": 0, "initial": 0, "mask": 1, "directions": 2, "hints": 2, "fixed": 3,
-         "rates": 4, "fidelity": 5, "seeds": 6, "creases": 6, "terms": 7, "marked": 0, "speed": 8, "slope_error": 10}
+         "rates": 4, "fidelity": 5, "seeds": 6, "creases": 6, "terms": 7, "marked": 0, "speed": 8, "slope_error": 10,
+         "along_speed": 11, "across_speed": 12}
 
 #: The argument that is the array of a panel, other than values.
 ARGUMENTS = {"MaskArray": "mask", "FidelityArray": "fidelity", "CreaseArray": "creases", "SpeedArray": "speed",
-             "SourceArray": "marked", "SlopeErrorArray": "slope_error"}
+             "SourceArray": "marked", "SlopeErrorArray": "slope_error", "AlongSpeedArray": "along_speed",
+             "AcrossSpeedArray": "across_speed"}
 
 #: The arguments of the functions for PyVista meshes that have other names.
 OF_MESHES = {"values": "array", "vectors": "array", "directions": "direction", "marked": "sources",

@@ -62,6 +62,7 @@ def make_surface(around=44, along=20):
     add(data.GetCellData(), "around",
         np.stack([-centres[:, 1], centres[:, 0], 0 * centres[:, 0]], 1))
     add(data.GetCellData(), "rates", np.outer(1 + 0.2 * np.sin(centres[:, 0]), [21, 21, 2.6, 2.6]))
+    add(data.GetCellData(), "speed", 1.0 + 0.5 * np.cos(2.0 * centres[:, 0]))
     add(of_points, "number", np.arange(len(points)).astype(np.int64))
     return data
 

@@ -20,6 +20,7 @@ NOT_CXX_PROPERTIES = {
     "Input", "InputArray", "MaskArray", "DirectionArray", "FixedArray", "DiffusionRateArray",
     "FidelityArray", "SeedArray", "CreaseArray", "DataTermArray", "PointsWithValues", "TimestepValues",
     "Sources", "PathPoints", "SourceArray", "SpeedArray", "SourceTimes", "SlopeErrorArray",
+    "AlongSpeedArray", "AcrossSpeedArray",
     "Mean",  # a list: SetMean(region, component, value)
     "MissingValue",  # a list: AddMissingValue(value)
 }
@@ -358,7 +359,7 @@ class TestProxies(unittest.TestCase):
             ("IntrinsicTVFilter", dict(FidelityWeight=1.0), {"AutomaticFidelity"}),
             ("MumfordShahFilter", {}, {"EdgeThreshold", "SmoothingLength"}),
             ("MumfordShahFilter", dict(AutomaticThreshold=0), {"NoiseLevel"}),
-            ("SurfaceDistanceFilter", {}, {"AlongSpeed", "AcrossSpeed"}),
+            ("SurfaceDistanceFilter", {}, {"AlongSpeed", "AcrossSpeed", "AlongSpeedArray", "AcrossSpeedArray"}),
             ("SurfaceDistanceFilter", dict(Method=0), {"SpeedArray", "SourceTimes", "DirectionArray",
                                                        "AlongSpeed", "AcrossSpeed"}),
             ("SurfaceDistanceFilter", dict(Method=1), {"AlongSpeed", "AcrossSpeed"}),

@@ -62,6 +62,7 @@ VALUES = {
     "DirectionArray": (["CELLS", "up"], ["POINTS", "east"]), "SmoothingLength": (0.2, 0.5),
     "DiffusionRateArray": (["CELLS", "rates"],), "FidelityArray": (["POINTS", "weight"],),
     "BlurFWHM": (0.0, 0.3), "SpeedArray": (["POINTS", "weight"], ["CELLS", "speed"], ["POINTS", ""]),
+    "AlongSpeedArray": (["CELLS", "speed"], ["POINTS", ""]), "AcrossSpeedArray": (["POINTS", "weight"], ["POINTS", ""]),
     "SourceTimes": (["POINTS", "f"],), "SlopeErrorArray": (["POINTS", "weight"], ["POINTS", ""]),
 }
 

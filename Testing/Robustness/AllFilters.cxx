@@ -18,7 +18,8 @@ namespace
 /// The index of the input array of a name in ParaView's panels.
 const std::map<std::string, int> ArrayIndices = { { "InputArray", 0 }, { "SourceArray", 0 },
   { "MaskArray", 1 }, { "DirectionArray", 2 }, { "FidelityArray", 5 }, { "CreaseArray", 6 },
-  { "SpeedArray", 8 }, { "SlopeErrorArray", 10 } };
+  { "SpeedArray", 8 }, { "SlopeErrorArray", 10 }, { "AlongSpeedArray", 11 },
+  { "AcrossSpeedArray", 12 } };
 
 void SetByName(vtkPolyDataAlgorithm* filter, const std::string& name, const std::string& value)
 {

@@ -198,7 +198,7 @@ TEST(CoarseSurfaces, GiveTheSameTurned)
 {
   const std::set<std::string> others = { "Turing", "TuringFirstOrder", "TuringCoarseStart",
     "RandomField", "RandomFieldOfMatern", "RandomFieldRough", // noise belongs to coordinates
-    "ArrivalTimeDirected", "Helmholtz", // the directions are not turned here
+    "ArrivalTimeDirected", "ArrivalTimeOfFibres", "Helmholtz", // the directions are not turned here
     // Labels of noise depend on the start, whose noise belongs to coordinates.
     "Segmentation", "SegmentationDefaults", "SegmentationOfCells", "SegmentationOfThree" };
   // Relative to the largest value, where results depend on round-off by more than that.

@@ -4,6 +4,7 @@
 
 #include "Core/Operators/CotanWeights.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace SurfaceDiffusion
@@ -37,25 +38,32 @@ TriangleMesh::Shape Stretched(
 } // namespace
 
 FrontShapes MakeFrontShapes(const TriangleMesh& mesh, const std::vector<double>& slowness,
-  const Eigen::Ref<const TangentVectors>& directions, double along, double across)
+  const Eigen::Ref<const TangentVectors>& directions, const std::vector<double>& along,
+  const std::vector<double>& across)
 {
+  const auto factorOf = [](const std::vector<double>& factors, Index t)
+  {
+    const std::size_t place = factors.size() == 1 ? 0 : static_cast<std::size_t>(t);
+    return factors.empty() ? 1.0 : factors[place];
+  };
   FrontShapes shapes;
   shapes.reserve(static_cast<std::size_t>(mesh.NumberOfTriangles()));
   for (Index t = 0; t < mesh.NumberOfTriangles(); ++t)
   {
-    TriangleMesh::Shape shape = mesh.Shapes()[t];
-    const double ofTriangle = slowness.empty() ? 1.0 : slowness[static_cast<std::size_t>(t)];
-    if (std::isinf(ofTriangle))
+    const TriangleMesh::Shape given = mesh.Shapes()[t];
+    const double ofTriangle = factorOf(slowness, t);
+    const double s1 = factorOf(along, t);
+    const double s2 = factorOf(across, t);
+    const double least = std::max(s1, s2) / LargestSpeedRatio;
+    const bool isDirected = s1 != s2 && directions.rows() > 0 && HasDirection(directions, t);
+    TriangleMesh::Shape shape = isDirected
+      ? Stretched(given, directions.row(t), ofTriangle / std::max(s1, least),
+          ofTriangle / std::max(s2, least))
+      : Scaled(given, ofTriangle / IsotropicMean(s1, s2));
+    if (!(shape.Length < std::numeric_limits<double>::infinity()))
     {
+      shape = given;
       shape.Length = std::numeric_limits<double>::infinity();
-    }
-    else if (directions.rows() > 0 && HasDirection(directions, t))
-    {
-      shape = Stretched(shape, directions.row(t), ofTriangle / along, ofTriangle / across);
-    }
-    else
-    {
-      shape = Scaled(shape, ofTriangle / IsotropicMean(along, across));
     }
     shapes.push_back(shape);
   }

@@ -23,10 +23,16 @@ inline bool IsBarrier(const FrontShapes& shapes, Index t)
   return !shapes.empty() && std::isinf(shapes[static_cast<std::size_t>(t)].Length);
 }
 
-/// The speeds of fronts are `along` and `across` times 1 / slowness. slowness: per triangle, 0 or more,
-/// and infinite for a barrier; empty: 1. directions: e1 of each triangle; no row, or zero: fronts have
-/// the geometric mean of both speeds in all directions. along, across: above 0.
+/// Of the speeds along and across a direction: larger ratios, and 0 beside a speed, count as this one.
+constexpr double LargestSpeedRatio = 1000.0;
+
+/// The speeds of fronts are `along` and `across` times 1 / slowness, each per triangle, or one for all, 0 or
+/// more; empty: 1. slowness: infinite for a barrier. directions: e1 of each triangle; no row, or zero:
+/// fronts have the geometric mean of both speeds in all directions. Where both are 0, or one of them
+/// without a direction, is a barrier; with a direction, the smaller one is no less than the larger one over
+/// LargestSpeedRatio.
 FrontShapes MakeFrontShapes(const TriangleMesh& mesh, const std::vector<double>& slowness,
-  const Eigen::Ref<const TangentVectors>& directions, double along, double across);
+  const Eigen::Ref<const TangentVectors>& directions, const std::vector<double>& along,
+  const std::vector<double>& across);
 
 } // namespace SurfaceDiffusion

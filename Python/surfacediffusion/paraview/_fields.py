@@ -20,7 +20,7 @@ from ._surfaces import BETWEEN, GIVEN_CELL, Block
 
 #: What the array of an index is for the extension; 7 has terms of data in place of data.
 BY_INDEX = ("data", "mask", "directions", "fixed", "rates", "fidelity", "seeds", "data", "speeds",
-            "start_times", "slope_errors")
+            "start_times", "slope_errors", "along_speeds", "across_speeds")
 FLAGS = (1, 3)  #: the indices of arrays of flags, whose type has no meaning
 POINTS, CELLS, POINTS_THEN_CELLS = 0, 1, vtkDataObject.FIELD_ASSOCIATION_POINTS_THEN_CELLS
 ANY = 0  #: number of components

@@ -376,7 +376,7 @@ class Distance(RunFilter):
     def find_fields(self, block: Block, fields: Fields) -> bool:
         fields.problems += self.problems_of_points
         fields.sources, fields.path_points = self.points, self.path_points
-        self.find_arrays(block, fields, [1, 2, 8] if self.has_points else [0, 9, 1, 2, 8])
+        self.find_arrays(block, fields, [1, 2, 8, 11, 12] if self.has_points else [0, 9, 1, 2, 8, 11, 12])
         for array, name in ((fields.data, "SourceArray"), (fields["start_times"], "SourceTimes")):
             if array.on_cells:
                 fields.problems.append(say("CellArray", name))
