@@ -415,9 +415,10 @@ inline bool IsWithoutMask(vtkAlgorithm* filter)
   return !info->Has(vtkDataObject::FIELD_NAME());
 }
 
-/// Check the promises of an updated filter. The return value describes the findings.
+/// Check the promises of an updated filter. The return value describes the findings. solverFailed: whether a
+/// warning has said that a linear solver missed its tolerance, which bounds no random field then.
 inline std::string ExpectPromises(
-  vtkPolyDataAlgorithm* filter, vtkPolyData* input, const char* name)
+  vtkPolyDataAlgorithm* filter, vtkPolyData* input, const char* name, bool solverFailed = false)
 {
   vtkDataArray* const u = ResultOf(filter, name);
   auto* const field =
@@ -534,7 +535,7 @@ inline std::string ExpectPromises(
       drawn += !std::isnan(value);
       largest = std::max(largest, std::isnan(value) ? 0.0 : std::abs(value));
     }
-    EXPECT_TRUE(largest < 20.0 || !field->GetNormalize()) << largest;
+    EXPECT_TRUE(largest < 20.0 || !field->GetNormalize() || solverFailed) << largest;
     EXPECT_TRUE(largest > 0.0 || drawn == 0);
     return "at most " + std::to_string(largest);
   }
