@@ -105,7 +105,7 @@ class VoxelDilator:
         """The values (v, k), where not known (v,) with those of others, or 0."""
         sources, rows = np.flatnonzero(known), np.flatnonzero(~known)
         step = max(1, _PANEL // max(len(sources), 1))
-        parts = [self._lengths(rows[i:i + step], sources) for i in range(0, len(rows), step)]
+        parts = (self._lengths(rows[i:i + step], sources) for i in range(0, len(rows), step))  # one at a time
         nearest = [(part.argmin(axis=1), part.min(axis=1)) for part in parts]
         result = np.array(values)
         result[rows] = 0.0
