@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "KindsOfRun.h"
 #include "Run/HarmonicMapSettings.h"
 #include "Run/HeatSettings.h"
 #include "Run/InterpolationSettings.h"
@@ -12,10 +13,8 @@
 #include "Run/TotalVariationSettings.h"
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -78,51 +77,6 @@ constexpr const char* ContentWords[] = { "Scalars", "Colors", "UnitVectors", "No
   "ScalarsOnCells", "ColorsOnCells", "UnitVectorsOnCells" };
 constexpr const char* ExemptionWords[] = { "None", "Numbering", "Energy", "Allocation" };
 
-/// Sets one setting to a number or a word.
-class TextSetter : public SettingVisitor
-{
-public:
-  using SettingVisitor::Choice;
-  TextSetter(std::string name, std::string value)
-    : Name(std::move(name))
-    , Value(std::move(value))
-  {
-  }
-  void Number(const SettingInfo& info, double& value, const SettingRange&) override
-  {
-    this->Set(info, value);
-  }
-  void Integer(const SettingInfo& info, int& value, const SettingRange&) override
-  {
-    this->Set(info, value);
-  }
-  void Switch(const SettingInfo& info, bool& value) override { this->Set(info, value); }
-  void Choice(const SettingInfo& info, int& value, const std::vector<const char*>& words,
-    const std::vector<bool>&) override
-  {
-    if (info.Name == this->Name)
-    {
-      value = static_cast<int>(std::find(words.begin(), words.end(), this->Value) - words.begin());
-      this->IsDone = value < static_cast<int>(words.size());
-    }
-  }
-
-  bool IsDone = false;
-
-private:
-  template <typename T>
-  void Set(const SettingInfo& info, T& value)
-  {
-    if (info.Name == this->Name)
-    {
-      value = static_cast<T>(std::stod(this->Value));
-      this->IsDone = true;
-    }
-  }
-
-  const std::string Name, Value;
-};
-
 /// Settings of a class that remember the model that is made with them.
 template <typename ModelSettings>
 std::shared_ptr<RunSettings> MakeWatched(Model** made)
@@ -156,44 +110,30 @@ constexpr std::pair<const char*, std::shared_ptr<RunSettings> (*)(Model**)> Sett
   { "Interpolation", MakeWatched<InterpolationSettings> },
 };
 
-/// The kind of a line, behind its first word.
-inline ModelKind ReadModelKind(std::istream& words)
+/// The model of a line.
+inline ModelKind MakeModelKind(const KindLine& line)
 {
+  const auto wordAt = [&](std::size_t place)
+  { return place < line.Words.size() ? line.Words[place] : std::string("None"); };
+  const auto indexOf = [](const auto& words, const std::string& word)
+  { return std::find(std::begin(words), std::end(words), word) - std::begin(words); };
   ModelKind kind;
-  std::string className, content;
-  std::vector<std::pair<std::string, std::string>> values;
-  words >> kind.Name >> className >> content;
-  kind.Data = static_cast<Content>(
-    std::find(std::begin(ContentWords), std::end(ContentWords), content) - ContentWords);
-  for (std::string word; words >> word;)
-  {
-    const std::size_t sign = word.find('=');
-    if (sign != std::string::npos)
-    {
-      values.emplace_back(word.substr(0, sign), word.substr(sign + 1));
-      continue;
-    }
-    kind.From = static_cast<Exemption>(
-      std::find(std::begin(ExemptionWords), std::end(ExemptionWords), word) - ExemptionWords);
-  }
+  kind.Name = wordAt(0);
+  kind.Data = static_cast<Content>(indexOf(ContentWords, wordAt(2)));
+  kind.From = static_cast<Exemption>(indexOf(ExemptionWords, wordAt(3)));
   const auto* const made = std::find_if(std::begin(SettingsOfModels), std::end(SettingsOfModels),
-    [&](const auto& entry) { return entry.first == className; });
+    [&](const auto& entry) { return entry.first == wordAt(1); });
   if (made == std::end(SettingsOfModels) || kind.Data > Content::UnitVectorsOnCells ||
     kind.From > Exemption::Allocation)
   {
     throw std::invalid_argument("kinds_of_run.txt has an unknown word for " + kind.Name);
   }
-  kind.Make = [values, make = made->second](Model** model)
+  kind.Make = [values = line.Values, make = made->second](Model** model)
   {
     auto settings = make(model);
     for (const auto& [name, value] : values)
     {
-      TextSetter setter(name, value);
-      settings->Visit(setter);
-      if (!setter.IsDone)
-      {
-        throw std::invalid_argument("there is no setting " + name + " or no value " + value);
-      }
+      SetByText(*settings, name, value);
     }
     return settings;
   };
@@ -206,15 +146,9 @@ inline const std::vector<ModelKind>& AllModelKinds()
   static const std::vector<ModelKind> all = []
   {
     std::vector<ModelKind> kinds;
-    std::ifstream file(SURFACEDIFFUSION_KINDS_OF_RUN);
-    for (std::string line; std::getline(file, line);)
+    for (const KindLine& line : ReadKindsOfRun(SURFACEDIFFUSION_KINDS_OF_RUN, true))
     {
-      std::istringstream words(line);
-      std::string first;
-      if (words >> first && first == "model")
-      {
-        kinds.push_back(ReadModelKind(words));
-      }
+      kinds.push_back(MakeModelKind(line));
     }
     return kinds;
   }();

@@ -624,10 +624,10 @@ std::vector<ModelKind> EnergyKinds()
       const std::string all = change;
       const bool isNumber = all.back() == '5';
       const std::size_t sign = all.find('=');
-      std::istringstream line(colors + (isNumber ? all.substr(0, sign) : all.substr(sign + 1)) +
-        " TotalVariation Colors NumberOfTimeSteps=6 AutomaticFidelity=0 ColorModel=" + colors +
-        " " + all);
-      kinds.push_back(ReadModelKind(line));
+      kinds.push_back(
+        MakeModelKind(ParseKind(colors + (isNumber ? all.substr(0, sign) : all.substr(sign + 1)) +
+          " TotalVariation Colors NumberOfTimeSteps=6 AutomaticFidelity=0 ColorModel=" + colors +
+          " " + all)));
     }
   }
   return kinds;

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "AllFilters.h"
 
+#include "KindsOfRun.h"
 #include "Properties.h"
 
-#include <fstream>
 #include <map>
-#include <sstream>
-#include <stdexcept>
-#include <utility>
+
+using namespace SurfaceDiffusion::Testing;
 
 namespace FilterTest
 {
@@ -39,35 +38,17 @@ void SetByName(vtkPolyDataAlgorithm* filter, const std::string& name, const std:
   }
   else
   {
-    const std::vector<Property> all = PropertiesOf(filter);
-    const auto found = std::find_if(
-      all.begin(), all.end(), [&](const Property& property) { return property.Name == name; });
-    if (found == all.end())
-    {
-      throw std::invalid_argument(filter->GetClassName() + (" has no property " + name));
-    }
-    found->Set(filter, value);
+    SetByText(SettingsOf(filter), name, value); // of a new filter
   }
 }
 
-/// The kind of a line.
-FilterKind ReadKind(const std::string& line)
+FilterKind MakeKind(const KindLine& line)
 {
-  std::istringstream words(line);
   FilterKind kind;
-  std::string className;
-  std::vector<std::pair<std::string, std::string>> values;
-  words >> kind.Name >> className >> kind.Result;
-  for (std::string word; words >> word;)
-  {
-    const std::size_t sign = word.find('=');
-    kind.IsSlow = kind.IsSlow || word == "slow";
-    if (sign != std::string::npos)
-    {
-      values.emplace_back(word.substr(0, sign), word.substr(sign + 1));
-    }
-  }
-  kind.Make = [className, values]
+  kind.Name = line.Words.at(0);
+  kind.Result = line.Words.at(2);
+  kind.IsSlow = line.Words.size() > 3 && line.Words[3] == "slow";
+  kind.Make = [className = line.Words[1], values = line.Values]
   {
     auto filter = MakeFilter(className);
     for (const auto& [name, value] : values)
@@ -86,13 +67,9 @@ const std::vector<FilterKind>& AllFilters()
   static const std::vector<FilterKind> all = []
   {
     std::vector<FilterKind> kinds;
-    std::ifstream file(SURFACEDIFFUSION_KINDS_OF_RUN);
-    for (std::string line; std::getline(file, line);)
+    for (const KindLine& line : ReadKindsOfRun(SURFACEDIFFUSION_KINDS_OF_RUN, false))
     {
-      if (!line.empty() && line[0] != '#' && line.rfind("model ", 0) != 0)
-      {
-        kinds.push_back(ReadKind(line));
-      }
+      kinds.push_back(MakeKind(line));
     }
     return kinds;
   }();

@@ -4,8 +4,6 @@
 
 #include "AllFilters.h"
 
-#include <algorithm>
-#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -122,17 +120,15 @@ void Property::Set(vtkPolyDataAlgorithm* filter, double value) const
   }
 }
 
-void Property::Set(vtkPolyDataAlgorithm* filter, const std::string& value) const
+SurfaceDiffusion::Settings& SettingsOf(vtkPolyDataAlgorithm* filter)
 {
-  const auto word = std::find(this->Words.begin(), this->Words.end(), value);
-  this->Set(filter,
-    this->Words.empty() ? std::stod(value) : static_cast<double>(word - this->Words.begin()));
+  return Access::SettingsOf(vtkSurfaceFilter::SafeDownCast(filter));
 }
 
 std::vector<Property> PropertiesOf(vtkPolyDataAlgorithm* filter)
 {
   Lister lister;
-  Access::SettingsOf(vtkSurfaceFilter::SafeDownCast(filter)).Visit(lister);
+  SettingsOf(filter).Visit(lister);
   return std::move(lister.List);
 }
 

@@ -33,10 +33,10 @@ struct Property
 
   double Get(vtkPolyDataAlgorithm* filter) const;
   void Set(vtkPolyDataAlgorithm* filter, double value) const;
-  /// value: a number, or a word.
-  void Set(vtkPolyDataAlgorithm* filter, const std::string& value) const;
 };
 
+/// A change of them is none of the filter.
+SurfaceDiffusion::Settings& SettingsOf(vtkPolyDataAlgorithm* filter);
 std::vector<Property> PropertiesOf(vtkPolyDataAlgorithm* filter);
 
 /// The names of all classes, and an object of one.
